@@ -1,0 +1,44 @@
+#pragma once
+/// \file
+/// One run of a verb: its problem and its results folder.
+
+#include "cli/arguments.hpp"
+#include "io/presentation.hpp"
+#include "io/problem_file.hpp"
+#include "io/result_folder.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace percuss::cli {
+
+/// Writes text to stdout. Throws std::runtime_error when that fails.
+void print(const std::string& text);
+
+/// With --out none all writing is skipped.
+class Session {
+public:
+    /// Reads the problem and looks at the results folder, without touching it yet. Throws io::ProblemError.
+    explicit Session(const Arguments& arguments);
+
+    [[nodiscard]] const io::ProblemFile& problem() const { return problem_; }
+
+    /// Creates the results folder, for these files.
+    void start(std::vector<std::string> files);
+    void write(const std::string& name, const std::string& content) const;
+    /// A table in the results folder; null when nothing is written.
+    [[nodiscard]] std::unique_ptr<study::RowSink> table(const std::string& name) const;
+    /// result.json and report.html.
+    void write_results(const std::string& document, const io::Presentation& presentation) const;
+    /// Closes the folder and tells where it is.
+    void finish(study::Ending ending);
+
+private:
+    io::ProblemFile problem_;
+    bool quiet_;
+    io::RunRecord record_;
+    std::unique_ptr<io::ResultFolder> folder_;
+};
+
+}  // namespace percuss::cli

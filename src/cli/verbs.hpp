@@ -1,0 +1,15 @@
+#pragma once
+/// \file
+/// One function per verb, from parsed arguments to exit code. They throw io::ProblemError or std::invalid_argument for
+/// bad input.
+
+#include "cli/arguments.hpp"
+
+namespace percuss::cli {
+
+int check(const Arguments& arguments);
+int orbit(const Arguments& arguments);
+int evaluate(const Arguments& arguments);
+int optimise(const Arguments& arguments);
+
+}  // namespace percuss::cli

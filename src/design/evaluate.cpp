@@ -1,0 +1,398 @@
+#include "design/evaluate.hpp"
+
+#include "design/measure.hpp"
+#include "design/operating_point.hpp"
+#include "kernels/kernels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+namespace percuss::design {
+namespace {
+
+using model::Family;
+using model::Key;
+using model::Specification;
+using std::numbers::pi;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+std::optional<double> given_omega(const Specification& spec, const flow::Integrator& integrator,
+                                  const model::Scaled& scaled) {
+    const double omega = scaled.parameters[index(integrator.info().omega)];
+    const bool given = spec.has(Key::drive_frequency) || spec.has(Key::nd_omega) || spec.has(Key::sm_omega);
+    if (given) { return omega; }
+    return std::nullopt;
+}
+
+EdgeKind to_edge_kind(boundary::Kind kind) {
+    switch (kind) {
+        case boundary::Kind::none: return EdgeKind::none;
+        case boundary::Kind::grazing: return EdgeKind::grazing;
+        case boundary::Kind::fold: return EdgeKind::fold;
+        case boundary::Kind::flip: return EdgeKind::flip;
+        case boundary::Kind::torus: return EdgeKind::torus;
+    }
+    return EdgeKind::none;
+}
+
+/// Factor from nondimensional state to the problem's units, per entry.
+std::vector<double> state_scales(const model::Scales& scales, int states) {
+    std::vector<double> factors(index(states), 1.0);
+    factors[0] = scales.length;
+    factors[1] = scales.length / scales.time;
+    return factors;
+}
+
+std::vector<double> to_user(const flow::State& y, const model::Scales& scales, int states) {
+    std::vector<double> out = state_scales(scales, states);
+    for (std::size_t k = 0; k < out.size(); ++k) { out[k] *= y[k]; }
+    return out;
+}
+
+flow::State from_user(const std::vector<double>& given, const model::Scales& scales, int states) {
+    if (given.size() != index(states)) {
+        throw std::invalid_argument("orbit.start has " + std::to_string(given.size()) + " entries: expected " +
+                                    std::to_string(states));
+    }
+    const std::vector<double> factors = state_scales(scales, states);
+    flow::State y{};
+    for (std::size_t k = 0; k < given.size(); ++k) {
+        if (!std::isfinite(given[k])) {
+            throw std::invalid_argument("orbit.start: every entry must be a finite number");
+        }
+        y[k] = given[k] / factors[k];
+    }
+    if (states > 2 && !(y[2] > 0.0 && y[3] > 0.0)) {
+        throw std::invalid_argument("orbit.start: the stretches xi_I and xi_II must be positive");
+    }
+    return y;
+}
+
+}  // namespace
+
+struct Evaluator::Implementation {
+    Problem problem;
+    std::unique_ptr<flow::Integrator> integrator;
+    std::unique_ptr<flow::Integrator> tighter;  ///< same scene, for error estimates
+
+    explicit Implementation(Problem p) : problem(std::move(p)) {
+        model::validate(problem.actuator);
+        const auto check = [&](Quantity q) {
+            const std::string_view why = unavailable(q, problem.actuator.family);
+            if (!why.empty()) {
+                throw std::invalid_argument(std::string(quantity_info(q).name) + " " + std::string(why));
+            }
+        };
+        for (const Objective& o : problem.objectives) { check(o.quantity); }
+        for (const Limit& l : problem.limits) { check(l.quantity); }
+        if (!(problem.margin >= 0.0 && problem.margin < 0.5)) {
+            throw std::invalid_argument("drive.margin: allowed is 0 % to 50 %");
+        }
+        integrator = make(problem.solver.tolerance);
+        tighter = make(std::max(1e-16, 1e-2 * problem.solver.tolerance));
+    }
+
+    [[nodiscard]] std::unique_ptr<flow::Integrator> make(double tolerance) const {
+        const Specification& spec = problem.actuator;
+        const model::Scaled scaled = model::scale(spec);
+        const bool viscous = model::actuator_kind(spec.family) == model::ActuatorKind::spring_mass ||
+                             scaled.parameters[model::membrane::mu_ratio] > 0.0;
+        kernels::IntegratorOptions options;
+        options.integrator = problem.solver.integrator;
+        options.instruction_set = problem.solver.instruction_set;
+        options.tolerance = tolerance;
+        return kernels::make_integrator(model::actuator_kind(spec.family), spec.law, viscous, options);
+    }
+};
+
+namespace {
+
+/// One evaluation under way.
+class Run {
+public:
+    Run(const Problem& problem, const flow::Integrator& integrator, const flow::Integrator& tighter,
+        const Specification& actuator, const Demand& demand)
+        : problem_(problem),
+          actuator_(actuator),
+          demand_(demand),
+          scaled_(model::scale(actuator)) {
+        system_ = {&integrator, scaled_.parameters, &cost_};
+        tighter_ = {&tighter, scaled_.parameters, &cost_};
+        result_.gradient_keys = demand.gradients;
+        for (Key key : demand.gradients) { keys_.push_back(model::scale_derivative(actuator, key)); }
+    }
+
+    Evaluation evaluate() {
+        const auto given = given_omega(actuator_, *system_.integrator, scaled_);
+        if (given) {
+            operate_at(*given);
+        } else {
+            operate_below_edge();
+        }
+        return finish();
+    }
+
+    Evaluation orbit(const std::optional<std::vector<double>>& start, int period) {
+        const auto given = given_omega(actuator_, *system_.integrator, scaled_);
+        if (!given) { throw std::invalid_argument("drive.frequency = edge: orbit needs a frequency as a number"); }
+        if (period < 1 || period > 64) { throw std::invalid_argument("period: allowed is 1 to 64 drive cycles"); }
+        set_given(*given);
+        Reached reached;
+        if (start) {
+            reached = from_start(from_user(*start, scaled_.scales, system_.states()), period);
+        } else {
+            reached = from_rest(period);
+        }
+        accept(reached);
+        return finish();
+    }
+
+private:
+    void set_given(double omega) {
+        system_ = system_.at_omega(omega);
+        tighter_ = tighter_.at_omega(omega);
+        result_.operating_point.omega = omega;
+        result_.operating_point.edge_kind = EdgeKind::given;
+        result_.operating_point.drive_frequency = omega / (2.0 * pi * scaled_.scales.time);
+    }
+
+    Reached from_start(const flow::State& y, int period) const {
+        Reached reached;
+        reached.orbit = polish_orbit(system_, y, period);
+        if (!reached.orbit.ok()) {
+            reached.kind = Reached::Kind::unsettled;
+            reached.reason = "Newton's method from orbit.start did not converge";
+            return reached;
+        }
+        reached.kind = orbit::max_multiplier(reached.orbit) < 1.0 ? Reached::Kind::stable : Reached::Kind::unstable;
+        if (reached.kind == Reached::Kind::unstable) { reached.reason = "the orbit is unstable"; }
+        return reached;
+    }
+
+    /// The motion reached from rest; when that is not of the period asked for, the first of a fixed sequence of random
+    /// starts that leads to one.
+    Reached from_rest(int period) const {
+        const flow::State rest = system_.integrator->rest_state(system_.parameters);
+        Reached reached = reach_orbit(system_, rest, period, false);
+        const auto fits = [&](const Reached& r) {
+            return r.kind == Reached::Kind::stable && minimal_period(system_, r.orbit) == period;
+        };
+        if (period == 1 || fits(reached)) { return reached; }
+        std::mt19937_64 generator(1);
+        const double centre = system_.integrator->centre(system_.parameters);
+        const double gap = std::abs(system_.stop_position() - centre);
+        const double size = std::max(gap, 0.05);
+        for (int attempt = 0; attempt < 200; ++attempt) {
+            const auto uniform = [&](double low, double high) {
+                return low + (high - low) * static_cast<double>(generator() >> 11U) * 0x1.0p-53;
+            };
+            flow::State y = rest;
+            y[0] = centre + uniform(-2.0 * size, gap);
+            y[1] = uniform(-2.0, 2.0) * system_.omega() * size;
+            for (int k = 2; k < system_.states(); ++k) { y[index(k)] *= uniform(0.97, 1.03); }
+            const auto settled = orbit::settle(system_, y, 150);
+            if (!settled) { continue; }
+            Reached candidate = from_start(*settled, period);
+            if (fits(candidate)) { return candidate; }
+        }
+        reached.kind = Reached::Kind::unsettled;
+        reached.reason = "no stable orbit of period " + std::to_string(period) + " was found from 200 starts";
+        return reached;
+    }
+
+    /// A frequency the user gave: the motion reached from rest.
+    void operate_at(double omega) {
+        set_given(omega);
+        const Reached reached = from_rest(1);
+        accept(reached);
+        const bool has_stop = actuator_.law != model::StopLaw::none;
+        if (has_stop && result_.status == EvaluationStatus::ok && reached.orbit.contacts.empty()) {
+            result_.status = EvaluationStatus::no_impact;
+            result_.reason = "the motion reached from rest does not touch the stop at this frequency";
+        }
+        if (problem_.single_stable != SingleStable::off && has_stop && result_.status == EvaluationStatus::ok) {
+            judge(free_orbits_from_above(system_, omega), nullptr);
+        }
+    }
+
+    void operate_below_edge() {
+        if (actuator_.law == model::StopLaw::none) {
+            throw std::invalid_argument("drive.frequency = edge needs a stop: stop.law is none");
+        }
+        OperationOptions options;
+        options.margin = problem_.margin;
+        options.check_neighbours = problem_.single_stable != SingleStable::off;
+        std::vector<flow::ParameterVector> directions;
+        for (const auto& key : keys_) { directions.push_back(key.parameters); }
+        options.directions = directions;
+        const EdgeOperation operation = operate_at_edge(system_, options);
+        const boundary::Edge& edge = operation.edge;
+        result_.operating_point.margin = problem_.margin;
+        if (edge.status != boundary::EdgeStatus::found) {
+            result_.status =
+                edge.status == boundary::EdgeStatus::no_impact ? EvaluationStatus::no_impact : EvaluationStatus::failed;
+            result_.reason = edge.reason;
+            return;
+        }
+        OperatingPoint& point = result_.operating_point;
+        point.edge_kind = to_edge_kind(edge.boundary.kind);
+        point.edge_omega = edge.boundary.omega;
+        point.omega = operation.omega;
+        point.drive_frequency = operation.omega / (2.0 * pi * scaled_.scales.time);
+        result_.gradients.edge_omega = edge.boundary.d_omega;
+        const std::size_t omega = index(system_.integrator->info().omega);
+        for (std::size_t i = 0; i < keys_.size(); ++i) {
+            keys_[i].parameters[omega] = (1.0 - problem_.margin) * edge.boundary.d_omega[i];
+        }
+        if (operation.fold) { set_fold_offset(*operation.fold); }
+        if (demand_.error_estimates) { estimate_edge_error(edge.boundary); }
+        system_ = system_.at_omega(operation.omega);
+        tighter_ = tighter_.at_omega(operation.omega);
+        accept(operation.reached);
+        const bool free_motion_alive =
+            std::any_of(operation.free_orbits.points.begin(), operation.free_orbits.points.end(),
+                        [](const auto& p) { return p.stable() && p.clearance < 0.0; });
+        if (result_.status != EvaluationStatus::ok && free_motion_alive) {
+            result_.status = EvaluationStatus::no_impact;
+            result_.reason =
+                "at the operating frequency, the margin below the edge, the free motion is clear of the stop "
+                "again and no impacting orbit is reached: the impact band is narrower than the margin";
+        }
+        if (options.check_neighbours && result_.status == EvaluationStatus::ok) {
+            judge(operation.free_orbits, operation.fold ? &*operation.fold : nullptr);
+        }
+    }
+
+    void set_fold_offset(const boundary::GrazingFold& fold) {
+        using Status = boundary::GrazingFold::Status;
+        if (fold.status == Status::found) { result_.operating_point.fold_offset = fold.offset; }
+        if (fold.status == Status::at_once) { result_.operating_point.fold_offset = 0.0; }
+    }
+
+    void estimate_edge_error(const boundary::Boundary& edge) {
+        const boundary::Boundary again = boundary::solve_boundary(tighter_, boundary::FreeBranch::half_cycle(),
+                                                                  edge.kind, edge.state, edge.omega, {});
+        const double moved = again.ok() ? std::abs(again.omega - edge.omega) : absent;
+        omega_error_ = (1.0 - problem_.margin) * (moved + 4e-16 * edge.omega);
+    }
+
+    void accept(const Reached& reached) {
+        switch (reached.kind) {
+            case Reached::Kind::stable: result_.status = EvaluationStatus::ok; break;
+            case Reached::Kind::unstable:
+            case Reached::Kind::unsettled: result_.status = EvaluationStatus::unstable; break;
+            default: result_.status = EvaluationStatus::failed; break;
+        }
+        result_.reason = reached.reason;
+        if (!reached.orbit.ok()) { return; }
+        const model::Scales& scales = scaled_.scales;
+        const Measurement measurement =
+            measure(system_, &tighter_, reached.orbit, scales, keys_, demand_, omega_error_, result_);
+        if (!measurement.ok) {
+            result_.status = EvaluationStatus::failed;
+            result_.reason = "the converged orbit could not be integrated again";
+            return;
+        }
+        OrbitReport& report = result_.orbit;
+        report.period = minimal_period(system_, reached.orbit);
+        report.contacts = static_cast<int>(reached.orbit.contacts.size());
+        report.residual = measurement.portrait.residual;
+        report.state = to_user(state_at_zero(system_, reached.orbit), scales, system_.states());
+        orbit::Orbit exact = reached.orbit;
+        exact.monodromy = measurement.portrait.monodromy;
+        const auto values = orbit::multipliers(exact);
+        report.multipliers.assign(values.begin(), values.end());
+    }
+
+    /// Tier 1: no fold beside the edge within the margin, no free orbit alive at the operating frequency, and the
+    /// impacting orbit stable.
+    void judge(const boundary::FreeOrbitsAt& free, const boundary::GrazingFold* fold) {
+        Uniqueness& uniqueness = result_.uniqueness;
+        uniqueness.tier = 1;
+        for (const boundary::FreePoint& p : free.points) {
+            if (!(p.clearance < 0.0) || !p.stable()) { continue; }
+            Attractor other;
+            other.period = 1;
+            other.state = to_user(p.state, scaled_.scales, system_.states());
+            other.peak_force = 0.0;
+            other.amplitude = scaled_.scales.length *
+                              (p.clearance + system_.stop_position() - system_.integrator->centre(system_.parameters));
+            other.max_multiplier = p.radius * p.radius;
+            uniqueness.attractors.push_back(other);
+        }
+        const bool fold_within = fold == nullptr || fold->status == boundary::GrazingFold::Status::none ||
+                                 result_.operating_point.fold_offset < problem_.margin;
+        if (!uniqueness.attractors.empty()) {
+            reject("a stable motion clear of the stop coexists at the operating frequency");
+        } else if (fold != nullptr && fold->status == boundary::GrazingFold::Status::failed) {
+            uniqueness.checked = "tier 1: the fold beside the edge could not be located";
+        } else if (!fold_within) {
+            reject("the fold beside the edge lies further below it than the margin");
+        } else if (!free.complete) {
+            uniqueness.checked = "tier 1: the free motion could not be followed below the operating frequency";
+        } else {
+            uniqueness.verdict = Verdict::unique;
+            uniqueness.checked =
+                "tier 1: alone among period-1 motions (the free motion followed past the operating frequency, the fold "
+                "beside the edge within the margin, all multipliers inside the unit circle); longer periods not "
+                "searched";
+        }
+        if (problem_.single_stable == SingleStable::sampled || problem_.single_stable == SingleStable::refuted) {
+            if (uniqueness.verdict == Verdict::unique) { uniqueness.verdict = Verdict::not_checked; }
+            uniqueness.checked += "; the sampled check that was asked for is not available in this version";
+        }
+    }
+    void reject(std::string_view why) {
+        result_.uniqueness.verdict = Verdict::not_unique;
+        result_.uniqueness.checked = "tier 1: " + std::string(why);
+        result_.status = EvaluationStatus::not_unique;
+        result_.reason = std::string(why);
+    }
+
+    Evaluation finish() {
+        result_.periods = cost_.periods();
+        return std::move(result_);
+    }
+
+    const Problem& problem_;
+    const Specification& actuator_;
+    const Demand& demand_;
+    model::Scaled scaled_;
+    flow::Cost cost_;
+    flow::System system_, tighter_;
+    std::vector<KeyDirection> keys_;
+    double omega_error_ = 0.0;
+    Evaluation result_;
+};
+
+}  // namespace
+
+Evaluator::Evaluator(Problem problem) : implementation_(std::make_unique<Implementation>(std::move(problem))) {}
+Evaluator::~Evaluator() = default;
+Evaluator::Evaluator(Evaluator&&) noexcept = default;
+Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
+
+const Problem& Evaluator::problem() const { return implementation_->problem; }
+
+Evaluation Evaluator::evaluate(const Specification& actuator, const Demand& demand) const {
+    model::validate(actuator);
+    return Run(implementation_->problem, *implementation_->integrator, *implementation_->tighter, actuator, demand)
+        .evaluate();
+}
+
+Evaluation Evaluator::evaluate(const Demand& demand) const {
+    return evaluate(implementation_->problem.actuator, demand);
+}
+
+Evaluation Evaluator::orbit(const Specification& actuator, const std::optional<std::vector<double>>& start, int period,
+                            const Demand& demand) const {
+    model::validate(actuator);
+    return Run(implementation_->problem, *implementation_->integrator, *implementation_->tighter, actuator, demand)
+        .orbit(start, period);
+}
+
+}  // namespace percuss::design

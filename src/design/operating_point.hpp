@@ -1,0 +1,69 @@
+#pragma once
+/// \file
+/// Where a design is driven and the motion it makes there, nondimensional.
+
+#include "boundary/edge.hpp"
+#include "flow/flow.hpp"
+#include "orbit/orbit.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace percuss::design {
+
+/// The motion reached from a state, polished to a periodic orbit.
+struct Reached {
+    enum class Kind : std::uint8_t {
+        not_run,
+        stable,
+        unstable,   ///< only an unstable orbit of this period was found
+        unsettled,  ///< no orbit of this period
+        failed,     ///< the flow failed
+    };
+    Kind kind = Kind::not_run;
+    orbit::Orbit orbit;
+    std::string reason;
+};
+
+/// Follows the motion from `from` (phase 0) for up to a few hundred cycles, with Newton's method tried in between,
+/// until a stable orbit of `period` cycles is captured. `must_strike`: an orbit that never touches the stop does not
+/// count.
+Reached reach_orbit(const flow::System& system, const flow::State& from, int period, bool must_strike);
+
+/// Newton from a state; the strobe phase is chosen away from contact. Low-speed contacts, where stroboscopic shooting
+/// has a corner, go through contact-sequence shooting.
+orbit::Orbit polish_orbit(const flow::System& system, const flow::State& from, int period);
+
+/// State of the orbit at phase 0.
+flow::State state_at_zero(const flow::System& system, const orbit::Orbit& orbit);
+
+/// Number of drive cycles after which the orbit really repeats: a divisor of its map's period.
+int minimal_period(const flow::System& system, const orbit::Orbit& orbit);
+
+/// The orbit continued from one frequency to another by Newton, steps halved on failure. Nothing when it is lost.
+std::optional<orbit::Orbit> continue_orbit(const flow::System& system, const orbit::Orbit& orbit, double to_omega);
+
+/// The edge of a design, the frequency (1 - margin) below it, and what stands there.
+struct EdgeOperation {
+    boundary::Edge edge;
+    double omega = 0.0;
+    /// Free orbits at the operating frequency (found by following the free branch below it), with their clearance.
+    boundary::FreeOrbitsAt free_orbits;
+    std::optional<boundary::GrazingFold> fold;  ///< when asked for and the edge is a grazing
+    Reached reached;
+};
+
+struct OperationOptions {
+    double margin = 0.01;
+    bool check_neighbours = true;  ///< fold beside the edge, free orbits at the operating frequency
+    std::span<const flow::ParameterVector> directions{};
+};
+
+EdgeOperation operate_at_edge(const flow::System& system, const OperationOptions& options);
+
+/// Free orbits that stay clear of the stop at a given frequency (all amplitudes met on the branch from above).
+boundary::FreeOrbitsAt free_orbits_from_above(const flow::System& system, double omega);
+
+}  // namespace percuss::design

@@ -1,0 +1,60 @@
+#include "flow/flow.hpp"
+
+#include <numbers>
+#include <utility>
+
+namespace percuss::flow {
+
+std::string_view to_string(Status status) {
+    switch (status) {
+        case Status::not_run: return "not run";
+        case Status::ok: return "ok";
+        case Status::too_many_events: return "too many contact events";
+        case Status::too_many_steps: return "too many integration steps";
+        case Status::diverged: return "diverged";
+        case Status::unsupported: return "not supported by this integrator";
+    }
+    return "unknown";
+}
+
+void append_contact(Result& result, const Contact& contact) { result.contacts.push_back(contact); }
+
+void reset(Result& result) {
+    std::vector<Contact> storage = std::move(result.contacts);
+    storage.clear();
+    result = Result{};
+    result.contacts = std::move(storage);
+}
+
+double Integrator::stop_position(const ParameterVector& p) const {
+    return centre(p) + p[static_cast<std::size_t>(info().gap)];
+}
+
+double Integrator::stop_position_derivative(const ParameterVector& p, const ParameterVector& dp) const {
+    return centre_derivative(p, dp) + dp[static_cast<std::size_t>(info().gap)];
+}
+
+double Cost::periods() const { return phase / (2.0 * std::numbers::pi); }
+
+System System::at_omega(double omega) const {
+    System other = *this;
+    other.parameters[static_cast<std::size_t>(integrator->info().omega)] = omega;
+    return other;
+}
+
+System System::with(const ParameterVector& p) const {
+    System other = *this;
+    other.parameters = p;
+    return other;
+}
+
+void System::run(const Request& request, Result& result) const {
+    integrator->run(parameters, request, result);
+    if (cost != nullptr) {
+        cost->phase += request.duration < 0.0 ? -request.duration : request.duration;
+        cost->runs += 1;
+        cost->steps += result.steps;
+    }
+}
+
+}  // namespace percuss::flow

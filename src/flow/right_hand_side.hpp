@@ -1,0 +1,75 @@
+#pragma once
+/// \file
+/// Equations of motion as a function that is evaluated point by point: what the step-by-step backends integrate.
+/// Knows nothing of membranes. Everything is nondimensional; theta = omega tau is the drive phase.
+
+#include "flow/flow.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace percuss::flow {
+
+/// When the stop acts. kelvin_voigt: while x >= x_stop. no_tension: while x >= x_stop and its force
+/// k (x - x_stop) + delta_i x' is positive. none: never.
+enum class ContactLaw : std::uint8_t { kelvin_voigt, no_tension, none };
+
+/// Signals along the motion whose largest modulus is an observable.
+enum class PeakSignal : std::uint8_t { field, current };
+
+/// Work per unit of tau: done by the drive, and turned into heat in the actuator (stop excluded).
+struct Powers {
+    double drive = 0.0;
+    double loss = 0.0;
+};
+
+class RightHandSide {
+public:
+    RightHandSide() = default;
+    RightHandSide(const RightHandSide&) = delete;
+    RightHandSide& operator=(const RightHandSide&) = delete;
+    virtual ~RightHandSide() = default;
+
+    [[nodiscard]] virtual const SystemInfo& info() const = 0;
+    [[nodiscard]] int states() const { return info().states; }
+    [[nodiscard]] virtual ContactLaw contact_law() const = 0;
+
+    /// rate = d(state)/d(theta), and its exact derivative along each direction (state, parameters and phase moving
+    /// together; at most max_lanes of them) in rate_d[0 .. directions.size()). `touching`: the force of the stop acts,
+    /// whatever its sign. Outside the model's domain the result holds NaN.
+    virtual void rates(const ParameterVector& p, double theta, const State& state, bool touching,
+                       std::span<const Direction> directions, State& rate, State* rate_d) const = 0;
+
+    /// Powers at a point of the motion, and their derivatives likewise.
+    virtual void powers(const ParameterVector& p, double theta, const State& state,
+                        std::span<const Direction> directions, Powers& value, Powers* value_d) const = 0;
+
+    /// Number of sides that have fields and currents; zero where these observables do not exist.
+    [[nodiscard]] virtual int sides() const { return 0; }
+    /// Value (signed) of a signal on one side, 0 <= side < sides(), and its derivatives likewise in value_d.
+    [[nodiscard]] virtual double signal(PeakSignal which, int side, const ParameterVector& p, double theta,
+                                        const State& state, std::span<const Direction> directions,
+                                        double* value_d) const = 0;
+
+    /// Whether the model means anything at this state; false for NaN.
+    [[nodiscard]] virtual bool meaningful(const State& state) const = 0;
+
+    /// Position x of the mass at rest, and its derivative along a parameter direction.
+    [[nodiscard]] virtual double centre(const ParameterVector& p) const = 0;
+    [[nodiscard]] virtual double centre_derivative(const ParameterVector& p, const ParameterVector& dp) const = 0;
+    /// As in Integrator.
+    [[nodiscard]] virtual State rest_state(const ParameterVector& p) const = 0;
+    [[nodiscard]] virtual double linear_resonance(const ParameterVector& p) const = 0;
+
+    void rate(const ParameterVector& p, double theta, const State& state, bool touching, State& out) const {
+        rates(p, theta, state, touching, {}, out, nullptr);
+    }
+    /// Derivative of rate() along one direction.
+    void rate_derivative(const ParameterVector& p, double theta, const State& state, bool touching,
+                         const Direction& direction, State& out) const {
+        State value{};
+        rates(p, theta, state, touching, {&direction, 1}, value, &out);
+    }
+};
+
+}  // namespace percuss::flow

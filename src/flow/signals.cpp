@@ -1,0 +1,175 @@
+#include "flow/signals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace percuss::flow {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr PeakSignal peak_signal(SignalKind kind) {
+    return kind == SignalKind::field ? PeakSignal::field : PeakSignal::current;
+}
+
+Columns state_columns(const AugmentedSystem& system, const Extended& y) {
+    Columns columns{};
+    for (int c = 0; c < system.columns(); ++c) { columns[at(c)] = y.data() + c * system.block(); }
+    return columns;
+}
+
+/// The cubic through values and slopes at both ends, on s in [0, 1].
+class Cubic {
+public:
+    Cubic(double h, const SignalSample& a, const SignalSample& b)
+        : value_(a.value),
+          slope_(a.slope * h),
+          c2_(3.0 * (b.value - a.value) - h * (2.0 * a.slope + b.slope)),
+          c3_(h * (a.slope + b.slope) - 2.0 * (b.value - a.value)) {}
+
+    [[nodiscard]] double value(double s) const { return value_ + s * (slope_ + s * (c2_ + s * c3_)); }
+    [[nodiscard]] double slope(double s) const { return slope_ + s * (2.0 * c2_ + 3.0 * s * c3_); }
+    /// Where the slope is extreme; outside [0, 1] or NaN when it is monotone inside.
+    [[nodiscard]] double inflection() const { return -c2_ / (3.0 * c3_); }
+    /// Value at the turning point between two places where the slope has opposite signs.
+    [[nodiscard]] double value_at_turn(double low, double high) const {
+        for (int i = 0; i < 12; ++i) {
+            const double middle = 0.5 * (low + high);
+            (opposite_signs(slope(low), slope(middle)) ? high : low) = middle;
+        }
+        return value(0.5 * (low + high));
+    }
+
+private:
+    double value_, slope_, c2_, c3_;
+};
+
+/// Whether a turning point estimated at `value`, a maximum or not, is worth polishing. The estimate may fall short by
+/// its whole height above the ends and by another 2 %.
+bool may_matter(const Wanted& wanted, bool maximum, double value, double left, double right) {
+    if (wanted.kind == Wanted::Kind::all) { return true; }
+    if (wanted.kind == Wanted::Kind::maxima) {
+        return maximum && value + 0.02 * std::abs(value) + std::abs(value - std::max(left, right)) > wanted.level;
+    }
+    const double highest = std::max(std::abs(left), std::abs(right));
+    const double height = std::abs(value);
+    return maximum == (value > 0.0) && 1.02 * height + std::abs(height - highest) > wanted.level;
+}
+
+}  // namespace
+
+MotionPoint motion_point(const AugmentedSystem& system, double theta, const State& values, bool touching) {
+    MotionPoint point{theta, values, touching, {}};
+    system.state_rate(theta, values.data(), touching, point.along.state.data());
+    point.along.phase = 1.0;
+    return point;
+}
+
+SignalSample overlap_sample(const AugmentedSystem& system, const State& values) {
+    return {values[0], values[1] / system.omega()};
+}
+
+SignalSample sample(const AugmentedSystem& system, Signal signal, const MotionPoint& point) {
+    const State& rate = point.along.state;
+    switch (signal.kind) {
+        case SignalKind::overlap: return {point.values[0], rate[0]};
+        case SignalKind::stop_force:
+            return {system.stop_force(point.values), system.stiffness() * rate[0] + system.damping() * rate[1]};
+        case SignalKind::acceleration: {
+            State second{};
+            system.rhs().rate_derivative(system.parameters(), point.theta, system.state(point.values), point.touching,
+                                         point.along, second);
+            return {system.omega() * rate[1], system.omega() * second[1]};
+        }
+        case SignalKind::field:
+        case SignalKind::current: break;
+    }
+    SignalSample result;
+    result.value = system.rhs().signal(peak_signal(signal.kind), signal.side, system.parameters(), point.theta,
+                                       system.state(point.values), {&point.along, 1}, &result.slope);
+    return result;
+}
+
+Sensitive sensitive(const AugmentedSystem& system, Signal signal, double theta, const Extended& y, bool touching) {
+    Sensitive result;
+    const State values = system.values(y);
+    switch (signal.kind) {
+        case SignalKind::overlap:
+            result.value = values[0];
+            for (int lane = 0; lane < system.lanes(); ++lane) { result.d[at(lane)] = system.entry(y, 1 + lane, 0); }
+            return result;
+        case SignalKind::stop_force:
+            result.value = system.stop_force(values);
+            for (int lane = 0; lane < system.lanes(); ++lane) {
+                result.d[at(lane)] =
+                    system.stiffness_d(lane) * values[0] + system.stiffness() * system.entry(y, 1 + lane, 0) +
+                    system.damping_d(lane) * values[1] + system.damping() * system.entry(y, 1 + lane, 1);
+            }
+            return result;
+        case SignalKind::acceleration: {
+            State rate{};
+            std::array<State, at(max_lanes)> rate_d{};
+            system.rhs().rates(system.parameters(), theta, system.state(values), touching,
+                               system.directions(state_columns(system, y)), rate, rate_d.data());
+            result.value = system.omega() * rate[1];
+            for (int lane = 0; lane < system.lanes(); ++lane) {
+                result.d[at(lane)] = system.omega() * rate_d[at(lane)][1] + system.omega_d(lane) * rate[1];
+            }
+            return result;
+        }
+        case SignalKind::field:
+        case SignalKind::current: break;
+    }
+    result.value =
+        system.rhs().signal(peak_signal(signal.kind), signal.side, system.parameters(), theta, system.state(values),
+                            system.directions(state_columns(system, y)), result.d.data());
+    return result;
+}
+
+TurningPoints turning_points(const AugmentedSystem& system, Signal signal, const Piece& piece, const SignalSample& left,
+                             const SignalSample& right, const Wanted& wanted) {
+    TurningPoints found;
+    const double h = piece.right - piece.left;
+    const Cubic cubic(h, left, right);
+    const auto end_at = [&](double theta, const State& values) -> RootEnd {
+        const MotionPoint point = motion_point(system, theta, values, piece.touching);
+        RootEnd end{theta, {sample(system, signal, point).slope}};
+        if (signal.kind == SignalKind::overlap) { end.sample.slope = point.along.state[1] / system.omega(); }
+        return end;
+    };
+    const auto slope_at = [&](double theta) -> RootSample {
+        State values{};
+        piece.stepper.values(theta, values);
+        return end_at(theta, values).sample;
+    };
+    const auto visit = [&](const RootEnd& a, const RootEnd& b) {
+        // Per unit of theta the slope falls through zero at a maximum; run backwards in theta it rises.
+        const bool maximum = (h > 0.0) == (a.sample.value > 0.0);
+        const double value = cubic.value_at_turn((a.at - piece.left) / h, (b.at - piece.left) / h);
+        if (may_matter(wanted, maximum, value, left.value, right.value)) {
+            const double theta = b.sample.value == 0.0 ? b.at : bracketed_root(a, b, slope_at);
+            found.points[at(found.count++)] = {theta, maximum};
+        }
+    };
+
+    if (left.slope == 0.0 || h == 0.0) {
+        return found;  // turned at the end of the previous piece, or stands still
+    }
+    if (opposite_signs(left.slope, right.slope) || right.slope == 0.0) {
+        visit(end_at(piece.left, piece.left_values), end_at(piece.right, piece.right_values));
+        return found;
+    }
+    const double s = cubic.inflection();
+    if (s > 0.0 && s < 1.0 && opposite_signs(cubic.slope(s) / h, left.slope)) {
+        const double theta = piece.left + s * h;
+        const RootEnd middle{theta, slope_at(theta)};
+        if (opposite_signs(middle.sample.value, left.slope)) {
+            visit(end_at(piece.left, piece.left_values), middle);
+            visit(middle, end_at(piece.right, piece.right_values));
+        }
+    }
+    return found;
+}
+
+}  // namespace percuss::flow

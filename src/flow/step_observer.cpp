@@ -1,0 +1,252 @@
+#include "flow/step_observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace percuss::flow {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+Sensitive negative(Sensitive a) {
+    a.value = -a.value;
+    for (double& d : a.d) { d = -d; }
+    return a;
+}
+
+Sensitive modulus(const Sensitive& a) { return a.value < 0.0 ? negative(a) : a; }
+
+constexpr bool has_modulus(SignalKind kind) { return kind == SignalKind::acceleration || kind == SignalKind::current; }
+
+/// Total derivative of a value at an event: its own at fixed phase, and what the motion of the event adds.
+Sensitive moving(Sensitive a, double slope, const Lanes& shift) {
+    for (std::size_t j = 0; j < shift.size(); ++j) {
+        if (shift[j] != 0.0) { a.d[j] += slope * shift[j]; }
+    }
+    return a;
+}
+
+void jump(const AugmentedSystem& system, Extended& y, double sign) {
+    const double delta = sign * system.damping();
+    const double v = system.entry(y, 0, 1);
+    const IntegralPlaces& places = system.integrals();
+    for (int column = 1; column < system.columns(); ++column) {
+        const double overlap = system.entry(y, column, 0);
+        system.entry(y, column, 1) -= delta * overlap;
+        if (places.impulse >= 0) {
+            system.entry(y, column, places.impulse) += delta * overlap;
+            system.entry(y, column, places.stop_work) += delta * v * overlap;
+        }
+    }
+}
+
+}  // namespace
+
+void cross_entry(const AugmentedSystem& system, Extended& y) { jump(system, y, +1.0); }
+void cross_exit(const AugmentedSystem& system, Extended& y) { jump(system, y, -1.0); }
+
+void Peak::raise(const Sensitive& candidate, double at_theta) {
+    if (!found || candidate.value > best.value) {
+        best = candidate;
+        theta = at_theta;
+        found = true;
+    }
+}
+
+double Peak::level() const { return found ? best.value : -std::numeric_limits<double>::infinity(); }
+
+StepObserver::StepObserver(const AugmentedSystem& system, std::uint32_t mask, Result& result)
+    : system_(system),
+      mask_(mask),
+      result_(result),
+      out_(result.observables) {
+    if (observes(observe_acceleration)) { signals_[at(watched_++)] = {SignalKind::acceleration, 0}; }
+    for (int side = 0; side < system.rhs().sides(); ++side) {
+        if (observes(observe_field)) { signals_[at(watched_++)] = {SignalKind::field, side}; }
+        if (observes(observe_current)) { signals_[at(watched_++)] = {SignalKind::current, side}; }
+    }
+}
+
+Peak& StepObserver::peak_of(SignalKind kind) {
+    switch (kind) {
+        case SignalKind::field: return field_;
+        case SignalKind::current: return current_;
+        default: return acceleration_;
+    }
+}
+
+void StepObserver::begin(double theta, const Extended& y, bool touching) {
+    offer_ends(theta, y, touching);
+    if (touching) { open_contact(theta, y, true); }
+}
+
+void StepObserver::end(double theta, const Extended& y, bool touching) {
+    offer_ends(theta, y, touching);
+    if (touching) { close_contact({theta, {}}, y, true); }
+    const auto shifted = [&](const Sensitive& overlap, double sign) {
+        Sensitive x = overlap;
+        x.value = sign * x.value + system_.origin();
+        for (int lane = 0; lane < system_.lanes(); ++lane) {
+            x.d[at(lane)] = sign * x.d[at(lane)] + system_.origin_d(lane);
+        }
+        return x;
+    };
+    if (watches_extrema()) {
+        out_.x_max = shifted(x_max_.best, 1.0);
+        out_.x_min = shifted(x_min_negative_.best, -1.0);
+        out_.theta_x_max = x_max_.theta;
+        out_.theta_x_min = x_min_negative_.theta;
+    }
+    out_.peak_force = force_.best;
+    out_.theta_peak_force = force_.theta;
+    out_.impact_velocity = impact_.best;
+    out_.peak_acceleration = acceleration_.best;
+    out_.peak_field = field_.best;
+    out_.peak_current = current_.best;
+
+    const auto integral = [&](int place) {
+        Sensitive value;
+        if (place >= 0) {
+            value.value = system_.entry(y, 0, place);
+            for (int lane = 0; lane < system_.lanes(); ++lane) {
+                value.d[at(lane)] = system_.entry(y, 1 + lane, place);
+            }
+        }
+        return value;
+    };
+    const IntegralPlaces& places = system_.integrals();
+    out_.impulse = integral(places.impulse);
+    out_.stop_work = integral(places.stop_work);
+    out_.drive_work = integral(places.drive_work);
+    out_.dissipation = integral(places.dissipation);
+}
+
+void StepObserver::offer_ends(double theta, const Extended& y, bool touching) {
+    if (watches_extrema()) {
+        const Sensitive overlap = sensitive(system_, {SignalKind::overlap, 0}, theta, y, touching);
+        x_max_.raise(overlap, theta);
+        x_min_negative_.raise(negative(overlap), theta);
+    }
+    for (int i = 0; i < watched_; ++i) {
+        const Signal signal = signals_[at(i)];
+        const Sensitive value = sensitive(system_, signal, theta, y, touching);
+        peak_of(signal.kind).raise(has_modulus(signal.kind) ? modulus(value) : value, theta);
+    }
+}
+
+void StepObserver::piece(const Piece& piece, const TurningPoints& turns) {
+    if (watches_extrema()) {
+        for (const TurningPoint& turn : turns) {
+            Extended y;
+            piece.stepper.everything(turn.theta, y);
+            const Sensitive overlap = sensitive(system_, {SignalKind::overlap, 0}, turn.theta, y, piece.touching);
+            if (turn.maximum) {
+                x_max_.raise(overlap, turn.theta);
+            } else {
+                x_min_negative_.raise(negative(overlap), turn.theta);
+            }
+        }
+    }
+    const bool watches_force = piece.touching && observes(observe_force);
+    if (watched_ == 0 && !watches_force) { return; }
+    const MotionPoint right = motion_point(system_, piece.right, piece.right_values, piece.touching);
+    for (int i = 0; i < watched_; ++i) {
+        const Signal signal = signals_[at(i)];
+        watch(signal, peak_of(signal.kind), left_[at(i)], piece, right);
+    }
+    if (watches_force) { watch({SignalKind::stop_force, 0}, contact_force_, force_left_, piece, right); }
+}
+
+void StepObserver::watch(Signal signal, Peak& peak, std::optional<SignalSample>& left, const Piece& piece,
+                         const MotionPoint& right_point) {
+    const bool by_modulus = has_modulus(signal.kind);
+    if (!left) { left = sample(system_, signal, motion_point(system_, piece.left, piece.left_values, piece.touching)); }
+    const SignalSample right = sample(system_, signal, right_point);
+    const Wanted wanted{by_modulus ? Wanted::Kind::largest_modulus : Wanted::Kind::maxima, peak.level()};
+    for (const TurningPoint& turn : turning_points(system_, signal, piece, *left, right, wanted)) {
+        Extended y;
+        piece.stepper.everything(turn.theta, y);
+        const Sensitive value = sensitive(system_, signal, turn.theta, y, piece.touching);
+        peak.raise(by_modulus ? modulus(value) : value, turn.theta);
+    }
+    left = right;
+}
+
+void StepObserver::corner(const Crossing& crossing, const Extended& y, bool touching) {
+    left_ = {};
+    force_left_.reset();
+    if (watched_ == 0) { return; }
+    const MotionPoint point = motion_point(system_, crossing.theta, system_.values(y), touching);
+    for (int i = 0; i < watched_; ++i) {
+        const Signal signal = signals_[at(i)];
+        if (signal.kind == SignalKind::field) {
+            continue;  // depends on x and theta alone: smooth across events
+        }
+        const SignalSample here = sample(system_, signal, point);
+        const Sensitive value =
+            moving(sensitive(system_, signal, crossing.theta, y, touching), here.slope, crossing.shift);
+        peak_of(signal.kind).raise(modulus(value), crossing.theta);
+    }
+}
+
+void StepObserver::enter(const Crossing& crossing, const Extended& y, bool with_impact) {
+    open_contact(crossing.theta, y, false);
+    opened_ = crossing;
+    if (!with_impact || !observes(observe_force)) { return; }
+    const MotionPoint before = motion_point(system_, crossing.theta, system_.values(y), false);
+    Sensitive speed;
+    speed.value = system_.entry(y, 0, 1);
+    for (int lane = 0; lane < system_.lanes(); ++lane) { speed.d[at(lane)] = system_.entry(y, 1 + lane, 1); }
+    speed = moving(speed, before.along.state[1], crossing.shift);
+    impact_.raise(speed, crossing.theta);
+    Sensitive force;
+    force.value = system_.damping() * speed.value;
+    for (int lane = 0; lane < system_.lanes(); ++lane) {
+        force.d[at(lane)] = system_.damping() * speed.d[at(lane)] + system_.damping_d(lane) * speed.value;
+    }
+    contact_force_.raise(force, crossing.theta);
+}
+
+void StepObserver::leave(const Crossing& crossing, const Extended& y) { close_contact(crossing, y, false); }
+
+void StepObserver::open_contact(double theta, const Extended& y, bool open) {
+    Contact contact;
+    contact.theta_in = theta;
+    contact.state_in = system_.state(system_.values(y));
+    contact.open_in = open;
+    result_.contacts.push_back(contact);
+    opened_ = {theta, {}};
+    contact_force_ = {};
+    if (open && observes(observe_force)) {
+        contact_force_.raise(sensitive(system_, {SignalKind::stop_force, 0}, theta, y, true), theta);
+    }
+}
+
+void StepObserver::close_contact(const Crossing& crossing, const Extended& y, bool open) {
+    Contact& contact = result_.contacts.back();
+    contact.theta_out = crossing.theta;
+    contact.state_out = system_.state(system_.values(y));
+    contact.open_out = open;
+    if (!observes(observe_force)) { return; }
+    if (open) {
+        contact_force_.raise(sensitive(system_, {SignalKind::stop_force, 0}, crossing.theta, y, true), crossing.theta);
+    }
+    contact.peak_force = contact_force_.best.value;
+    if (contact_force_.found) {
+        if (force_.found) {
+            out_.runner_up_force = std::max(out_.runner_up_force, std::min(force_.best.value, contact.peak_force));
+        }
+        force_.raise(contact_force_.best, contact_force_.theta);
+    }
+    const double omega = system_.omega();
+    const double lasted = (crossing.theta - opened_.theta) / omega;
+    out_.contact_time.value += lasted;
+    for (int lane = 0; lane < system_.lanes(); ++lane) {
+        out_.contact_time.d[at(lane)] +=
+            (crossing.shift[at(lane)] - opened_.shift[at(lane)] - lasted * system_.omega_d(lane)) / omega;
+    }
+}
+
+}  // namespace percuss::flow

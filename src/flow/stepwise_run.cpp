@@ -1,0 +1,261 @@
+#include "flow/stepwise_run.hpp"
+
+#include "flow/bracketed_root.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace percuss::flow {
+namespace {
+
+constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+bool all_finite(const AugmentedSystem& system, const Extended& y) {
+    for (int i = 0; i < system.size(); ++i) {
+        if (!std::isfinite(y[at(i)])) { return false; }
+    }
+    return true;
+}
+
+}  // namespace
+
+StepwiseRun::StepwiseRun(const AugmentedSystem& system, Stepper& stepper, const Request& request, Result& result)
+    : system_(system),
+      stepper_(stepper),
+      request_(request),
+      result_(result),
+      observer_(system, request.observe, result) {}
+
+bool StepwiseRun::hybrid() const {
+    return request_.stop == StopMode::hybrid && system_.rhs().contact_law() != ContactLaw::none;
+}
+
+void StepwiseRun::run() {
+    begin();
+    while (ongoing() && advance()) {
+        const Piece step = step_as_piece();
+        const bool turns_matter = hybrid() || observer_.watches_extrema();
+        const TurningPoints turns = turns_matter ? turns_of(SignalKind::overlap, step) : TurningPoints{};
+        const std::optional<Event> event = hybrid() ? first_event(step, turns) : std::nullopt;
+        observe(step, turns, event);
+        if (event) {
+            cross(*event);
+        } else if (stepper_.right() == limit()) {
+            stepper_.everything(stepper_.right(), y_);
+            theta_ = stepper_.right();
+            result_.status = Status::ok;
+        }
+    }
+    finish();
+}
+
+void StepwiseRun::begin() {
+    theta_ = request_.theta;
+    y_ = system_.initial(request_.state);
+    phase_ = first_phase();
+    if (request_.starts_in_contact && hybrid()) { system_.entry(y_, 0, 0) = 0.0; }
+    if (!all_finite(system_, y_) || !system_.rhs().meaningful(system_.state(system_.values(y_)))) {
+        result_.status = Status::diverged;
+        return;
+    }
+    observer_.begin(theta_, y_, touching());
+    if (request_.duration == 0.0) {
+        result_.status = Status::ok;
+        return;
+    }
+    restart();
+}
+
+StepwiseRun::Phase StepwiseRun::first_phase() const {
+    if (request_.stop == StopMode::held) { return Phase::contact; }
+    if (!hybrid()) { return Phase::free; }
+    const State values = system_.values(y_);
+    if (request_.starts_in_contact) { return Phase::contact; }
+    if (!(values[0] > 0.0)) { return Phase::free; }
+    const bool pushes = system_.rhs().contact_law() == ContactLaw::kelvin_voigt || system_.stop_force(values) > 0.0;
+    return pushes ? Phase::contact : Phase::slack;
+}
+
+void StepwiseRun::restart() {
+    if (!stepper_.start(theta_, y_, touching(), limit())) { result_.status = Status::diverged; }
+}
+
+bool StepwiseRun::advance() {
+    if (result_.steps >= request_.max_steps) {
+        result_.status = Status::too_many_steps;
+        return false;
+    }
+    ++result_.steps;
+    if (!stepper_.advance() || !system_.rhs().meaningful(system_.state(stepper_.right_values()))) {
+        result_.status = Status::diverged;
+        return false;
+    }
+    return true;
+}
+
+Piece StepwiseRun::step_as_piece() {
+    return {stepper_, stepper_.left(), stepper_.right(), stepper_.left_values(), stepper_.right_values(), touching()};
+}
+
+SignalSample StepwiseRun::sample_at(SignalKind kind, double theta, const State& values) const {
+    return kind == SignalKind::overlap ? overlap_sample(system_, values)
+                                       : sample(system_, {kind, 0}, motion_point(system_, theta, values, touching()));
+}
+
+TurningPoints StepwiseRun::turns_of(SignalKind kind, const Piece& piece) const {
+    return turning_points(system_, {kind, 0}, piece, sample_at(kind, piece.left, piece.left_values),
+                          sample_at(kind, piece.right, piece.right_values), Wanted{});
+}
+
+std::optional<StepwiseRun::Event> StepwiseRun::first_event(const Piece& step, const TurningPoints& turns) {
+    const auto event = [](EventKind kind, const std::optional<double>& theta) -> std::optional<Event> {
+        return theta ? std::optional<Event>{{kind, *theta}} : std::nullopt;
+    };
+    const bool pulls = system_.rhs().contact_law() == ContactLaw::kelvin_voigt;
+    if (phase_ == Phase::free) {
+        return event(EventKind::entry, first_crossing(SignalKind::overlap, true, step, turns));
+    }
+    if (phase_ == Phase::contact && pulls) {
+        return event(EventKind::exit, first_crossing(SignalKind::overlap, false, step, turns));
+    }
+    const TurningPoints force_turns = turns_of(SignalKind::stop_force, step);
+    if (phase_ == Phase::contact) {
+        return event(EventKind::release, first_crossing(SignalKind::stop_force, false, step, force_turns));
+    }
+    const auto departure = event(EventKind::departure, first_crossing(SignalKind::overlap, false, step, turns));
+    const auto reload = event(EventKind::reload, first_crossing(SignalKind::stop_force, true, step, force_turns));
+    const bool departs_first = departure && (!reload || departure->theta <= reload->theta);
+    return departs_first ? departure : reload;
+}
+
+std::optional<double> StepwiseRun::first_crossing(SignalKind kind, bool upward, const Piece& step,
+                                                  const TurningPoints& turns) {
+    const auto end_at = [&](double theta, const State& values) -> RootEnd {
+        const SignalSample s = sample_at(kind, theta, values);
+        return {theta, {s.value, s.slope}};
+    };
+    const auto evaluate = [&](double theta) {
+        State values{};
+        stepper_.values(theta, values);
+        return end_at(theta, values);
+    };
+    const auto crossing_between = [&](const RootEnd& a, const RootEnd& b) -> std::optional<double> {
+        const bool beyond = upward ? b.sample.value > 0.0 : b.sample.value < 0.0;
+        if (!beyond) { return std::nullopt; }
+        if (!opposite_signs(a.sample.value, b.sample.value)) {
+            return a.at;  // on the surface, or over it by rounding, and moving on
+        }
+        return bracketed_root(a, b, [&](double theta) { return evaluate(theta).sample; });
+    };
+    RootEnd a = end_at(step.left, step.left_values);
+    for (const TurningPoint& turn : turns) {
+        const RootEnd b = evaluate(turn.theta);
+        if (const auto theta = crossing_between(a, b)) { return theta; }
+        a = b;
+    }
+    return crossing_between(a, end_at(step.right, step.right_values));
+}
+
+void StepwiseRun::observe(Piece piece, TurningPoints turns, const std::optional<Event>& event) {
+    if (!observer_.watches_steps() && !(touching() && (request_.observe & observe_force) != 0U)) { return; }
+    if (event) {
+        while (turns.count > 0 && turns.points[at(turns.count - 1)].theta > event->theta) { --turns.count; }
+        piece.right = event->theta;
+        stepper_.values(piece.right, piece.right_values);
+    }
+    observer_.piece(piece, turns);
+}
+
+Crossing StepwiseRun::crossing(const Event& event) const {
+    Crossing result{event.theta, {}};
+    const bool by_force = event.kind == EventKind::release || event.kind == EventKind::reload;
+    const SignalKind kind = by_force ? SignalKind::stop_force : SignalKind::overlap;
+    const double slope = sample_at(kind, event.theta, system_.values(y_)).slope;
+    const Sensitive value = sensitive(system_, {kind, 0}, event.theta, y_, touching());
+    for (int lane = 0; lane < system_.lanes(); ++lane) {
+        const double d = value.d[at(lane)];
+        result.shift[at(lane)] = d == 0.0 ? 0.0 : -d / slope;
+    }
+    return result;
+}
+
+void StepwiseRun::cross(const Event& event) {
+    if (++events_ > request_.max_events) {
+        result_.status = Status::too_many_events;
+        return;
+    }
+    theta_ = event.theta;
+    stepper_.everything(theta_, y_);
+    const bool on_surface = event.kind != EventKind::release && event.kind != EventKind::reload;
+    if (on_surface) { system_.entry(y_, 0, 0) = 0.0; }
+    const Crossing place = crossing(event);
+    observer_.corner(place, y_, touching());
+    switch (event.kind) {
+        case EventKind::entry:
+            observer_.enter(place, y_, true);
+            cross_entry(system_, y_);
+            phase_ = Phase::contact;
+            break;
+        case EventKind::exit:
+            observer_.leave(place, y_);
+            cross_exit(system_, y_);
+            phase_ = Phase::free;
+            break;
+        case EventKind::release:
+            observer_.leave(place, y_);
+            phase_ = Phase::slack;
+            if (system_.damping() == 0.0) {  // the force ends on the surface
+                system_.entry(y_, 0, 0) = 0.0;
+                phase_ = Phase::free;
+            }
+            break;
+        case EventKind::reload:
+            observer_.enter(place, y_, false);
+            phase_ = Phase::contact;
+            break;
+        case EventKind::departure: phase_ = Phase::free; break;
+    }
+    observer_.corner(place, y_, touching());
+    if (theta_ == limit()) {
+        result_.status = Status::ok;
+    } else {
+        restart();
+    }
+}
+
+void StepwiseRun::finish() {
+    const State values = system_.values(y_);
+    result_.state = system_.state(values);
+    result_.rhs_evaluations = system_.evaluations();
+    if (result_.status != Status::ok) { return; }
+    observer_.end(theta_, y_, touching());
+    for (int lane = 0; lane < system_.lanes(); ++lane) {
+        for (int i = 0; i < system_.states(); ++i) {
+            result_.state_d[at(i)][at(lane)] = system_.entry(y_, 1 + lane, i);
+        }
+        result_.state_d[0][at(lane)] += system_.origin_d(lane);
+    }
+    system_.state_rate(theta_, values.data(), touching(), result_.rate.data());
+    if (request_.stop == StopMode::held) { divide(); }
+    result_.rhs_evaluations = system_.evaluations();
+}
+
+void StepwiseRun::divide() {
+    const State values = system_.values(y_);
+    const double duration = request_.duration;
+    const double omega = system_.omega();
+    const Sensitive force = sensitive(system_, {SignalKind::stop_force, 0}, theta_, y_, true);
+    const double unit = system_.stiffness() * std::abs(duration) + system_.damping();
+    Sensitive& gap = result_.divided_gap;
+    Sensitive& share = result_.divided_force;
+    gap.value = duration == 0.0 ? values[1] / omega : values[0] / duration;
+    share.value = unit > 0.0 ? force.value / unit : 0.0;
+    for (int lane = 0; lane < system_.lanes(); ++lane) {
+        gap.d[at(lane)] = duration == 0.0 ? (system_.entry(y_, 1 + lane, 1) - gap.value * system_.omega_d(lane)) / omega
+                                          : system_.entry(y_, 1 + lane, 0) / duration;
+        const double unit_d = system_.stiffness_d(lane) * std::abs(duration) + system_.damping_d(lane);
+        share.d[at(lane)] = unit > 0.0 ? (force.d[at(lane)] - share.value * unit_d) / unit : 0.0;
+    }
+}
+
+}  // namespace percuss::flow

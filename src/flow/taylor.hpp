@@ -1,0 +1,297 @@
+#pragma once
+/// \file
+/// The Taylor integrator with events: expand, choose a step, locate the next event in it, observe, advance, cross.
+/// A template over a model's jet (model/membrane_jet.hpp, model/spring_jet.hpp), which brings the scalar: double, a
+/// Dual with sensitivities as SIMD lanes, or an extended precision.
+///
+/// Order and step: A. Jorba, M. Zou, "A software package for the numerical integration of ODEs by means of high-order
+/// Taylor methods", Experimental Mathematics 14 (2005): order -ln(tol)/2 + 2, step from the last two coefficients; no
+/// step is rejected. Derivative lanes are taken at fixed times; the saltation at an event is applied in the form
+/// S = I -+ delta_i e_v e_x^T, which never divides by the velocity (kelvin-voigt entry and exit; the acceleration jumps
+/// by delta_i v there, so (f- - f+) dt_e = -delta_i (dx - dx_stop) exactly).
+
+#include "flow/flow.hpp"
+#include "flow/series_observer.hpp"
+#include "numerics/dual.hpp"
+#include "numerics/polynomial_roots.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace percuss::flow {
+inline namespace PERCUSS_ISA {
+
+enum class Law : std::uint8_t { kelvin_voigt, no_tension, none };
+
+template <class Jet>
+class TaylorRun {
+public:
+    using T = typename Jet::Scalar;
+    using Base = typename Jet::Base;
+    using JetState = typename Jet::State;
+    static constexpr int lanes = numerics::ScalarTraits<T>::lanes;
+
+    /// parameters: as the jet's model numbers them.
+    TaylorRun(const T* parameters, Law law, int order)
+        : jet_(parameters),
+          law_(law),
+          order_(std::min(order, Jet::max_order)),
+          safety_(std::exp(-2.0 - 0.7 / (order_ - 1))),
+          observer_(jet_) {}
+
+    /// Follows the flow from `start` at phase `theta` (whose derivative part, if any, shifts the drive) for `duration`.
+    Status run(const JetState& start, const T& theta, const Base& duration, const Request& request) {
+        request_ = &request;
+        theta_ = theta;
+        elapsed_ = 0;
+        duration_ = duration;
+        jet_.load(start);
+        enter_first_phase();
+        observer_.begin(request.observe, numerics::base(theta_), touching());
+        while (status_ == Status::not_run) {
+            jet_.expand(theta_at(), touching(), order_);
+            choose_step();
+            locate_event();
+            observer_.step(order_, step_, touching(), event_ != Event::none);
+            advance();
+            if (event_ != Event::none) { cross(); }
+            if (event_ == Event::none && finished_) { status_ = Status::ok; }
+            if (++steps_ >= request.max_steps && status_ == Status::not_run) { status_ = Status::too_many_steps; }
+        }
+        observer_.end(touching());
+        return status_;
+    }
+
+    [[nodiscard]] JetState state() const { return jet_.unload(); }
+    [[nodiscard]] long steps() const { return steps_; }
+    [[nodiscard]] Jet& jet() { return jet_; }
+    [[nodiscard]] SeriesObserver<Jet>& observer() { return observer_; }
+    [[nodiscard]] const T& divided_gap() const { return divided_gap_; }
+    [[nodiscard]] bool touching() const { return phase_ == Phase::contact; }
+    [[nodiscard]] T theta_at() const { return theta_ + elapsed_; }
+
+private:
+    /// slack: inside the stop's zone with no force on it (no-tension law only).
+    enum class Phase : std::uint8_t { free, contact, slack };
+    enum class Event : std::uint8_t { none, entry, exit, release, reload, leave };
+
+    void enter_first_phase() {
+        phase_ = Phase::free;
+        deflate_ = false;
+        switch (request_->stop) {
+            case StopMode::off: return;
+            case StopMode::held: phase_ = Phase::contact; return;
+            case StopMode::hybrid: break;
+        }
+        if (law_ == Law::none) { return; }
+        const Base gap = numerics::base(jet_.position()) - numerics::base(jet_.stop_position());
+        if (request_->starts_in_contact) {
+            phase_ = Phase::contact;
+            deflate_ = deflates_on_entry();
+        } else if (gap > 0) {
+            phase_ = law_ == Law::no_tension && force_now() < 0 ? Phase::slack : Phase::contact;
+        }
+    }
+
+    [[nodiscard]] Base force_now() {
+        return numerics::base(jet_.stop_stiffness()) *
+                   (numerics::base(jet_.position()) - numerics::base(jet_.stop_position())) +
+               numerics::base(jet_.stop_damping()) * numerics::base(jet_.velocity());
+    }
+    [[nodiscard]] bool deflates_on_entry() const {
+        return law_ == Law::kelvin_voigt || numerics::base(jet_.stop_damping()) == 0;
+    }
+
+    /// Jorba and Zou (2005), section 3.2, with one scale for the whole state.
+    void choose_step() {
+        const Base size = jet_.norm(0);
+        const double scale = static_cast<double>(size);
+        double h = 1e300;
+        for (int j : {order_ - 1, order_}) {
+            const double c = static_cast<double>(jet_.norm(j));
+            if (!(c < 1e300) || !(scale < 1e6)) {
+                status_ = Status::diverged;
+                step_ = 0;
+                finished_ = true;
+                return;
+            }
+            if (c > 0) { h = std::min(h, std::pow(scale / c, 1.0 / j)); }
+        }
+        h = std::min(h * safety_, 3.0);
+        const Base remaining = duration_ - elapsed_;
+        const Base room = remaining < 0 ? -remaining : remaining;
+        finished_ = !(room > Base(h));
+        step_ = finished_ ? remaining : (remaining < 0 ? Base(-h) : Base(h));
+    }
+
+    /// The next event inside the step, if any, shortens it. A polynomial bound rules most steps out; the rest go to
+    /// root isolation, which cannot miss a crossing. A function that is zero at the start of the step is divided by t
+    /// first.
+    void locate_event() {
+        event_ = Event::none;
+        if (request_->stop != StopMode::hybrid || law_ == Law::none || status_ != Status::not_run) { return; }
+        switch (phase_) {
+            case Phase::free: find(Event::entry, false, +1); break;
+            case Phase::contact:
+                if (law_ == Law::kelvin_voigt) {
+                    find(Event::exit, false, -1);
+                } else {
+                    find(Event::release, true, -1);
+                }
+                break;
+            case Phase::slack:
+                find(Event::leave, false, -1);
+                find(Event::reload, true, +1);
+                break;
+        }
+    }
+
+    [[nodiscard]] Base event_coefficient(bool force, int j) const {
+        const Base& x = numerics::base(jet_.x()[j]);
+        const Base e = j == 0 ? x - numerics::base(jet_.stop_position()) : x;
+        if (!force) { return e; }
+        return numerics::base(jet_.stop_stiffness()) * e +
+               numerics::base(jet_.stop_damping()) * numerics::base(jet_.v()[j]);
+    }
+
+    /// Looks for the first sign change of the gap (or of the stop force) towards `sign` in (0, step].
+    void find(Event event, bool force, int sign) {
+        const double h = static_cast<double>(step_);
+        double c[numerics::max_degree + 1];
+        double power = 1.0;
+        double bound = 0.0;
+        const int shift = deflate_ ? 1 : 0;
+        const int degree = order_ - shift;
+        const double unit = static_cast<double>(sign);
+        for (int j = 0; j <= degree; ++j) {
+            c[j] = static_cast<double>(event_coefficient(force, j + shift)) * power;
+            power *= h;
+            if (j > 0) { bound += std::max(0.0, unit * c[j]); }
+        }
+        const bool already = unit * c[0] > 0.0;  // crossed by rounding at the very start
+        if (already && unit * c[1] > 0.0 && !deflate_) { return accept(event, Base(0)); }
+        if (unit * c[0] + bound < 0.0) { return; }
+        double t = 0.0;
+        if (numerics::first_sign_change(c, degree, sign, t)) { accept(event, refine(force, shift, Base(t) * step_)); }
+    }
+
+    /// Newton's method in the scalar's own precision (the isolated root is good to double precision).
+    [[nodiscard]] Base refine(bool force, int shift, Base t) const {
+        if constexpr (sizeof(Base) > sizeof(double)) {
+            for (int iteration = 0; iteration < 3; ++iteration) {
+                Base value = 0;
+                Base slope = 0;
+                for (int j = order_; j >= shift; --j) {
+                    slope = slope * t + value;
+                    value = value * t + event_coefficient(force, j);
+                }
+                t = t - value / slope;
+            }
+        }
+        return t;
+    }
+
+    void accept(Event event, const Base& t) {
+        step_ = t;
+        event_ = event;
+        finished_ = false;
+    }
+
+    void advance() {
+        if (request_->stop == StopMode::held && finished_) { divide_gap(); }
+        jet_.advance(step_, order_);
+        elapsed_ = finished_ ? duration_ : elapsed_ + step_;
+        deflate_ = false;
+    }
+
+    /// (x - x_stop)/duration at the end of a held run. In a single step that starts on the surface this is the series
+    /// divided by t: smooth through duration zero.
+    void divide_gap() {
+        const T start = jet_.x()[0] - jet_.stop_position();
+        const bool single = steps_ == 0;
+        T sum = jet_.x()[order_];
+        for (int j = order_ - 1; j >= 1; --j) { sum = sum * step_ + jet_.x()[j]; }
+        if (single) {
+            divided_gap_ = sum;
+            if (duration_ != 0) { divided_gap_ += start * (Base(1) / duration_); }
+        } else {
+            divided_gap_ = (sum * step_ + start) * (Base(1) / duration_);
+        }
+    }
+
+    /// Puts the state on the surface, applies the saltation to the lanes and changes phase.
+    void cross() {
+        if (++events_ > request_->max_events) {
+            status_ = Status::too_many_events;
+            return;
+        }
+        const Base theta = numerics::base(theta_) + elapsed_;
+        switch (event_) {
+            case Event::entry:
+                jet_.set_position(numerics::base(jet_.stop_position()));
+                observer_.enter(theta);
+                saltate(-1);
+                phase_ = Phase::contact;
+                deflate_ = deflates_on_entry();
+                break;
+            case Event::exit:
+                jet_.set_position(numerics::base(jet_.stop_position()));
+                observer_.exit(theta, true);
+                saltate(+1);
+                phase_ = Phase::free;
+                deflate_ = true;
+                break;
+            case Event::release:
+                if (numerics::base(jet_.stop_damping()) == 0) {
+                    jet_.set_position(numerics::base(jet_.stop_position()));
+                    phase_ = Phase::free;
+                    deflate_ = true;
+                } else {
+                    phase_ = Phase::slack;
+                }
+                observer_.exit(theta, false);
+                break;
+            case Event::reload:
+                observer_.enter(theta);
+                phase_ = Phase::contact;
+                break;
+            case Event::leave:
+                jet_.set_position(numerics::base(jet_.stop_position()));
+                phase_ = Phase::free;
+                deflate_ = true;
+                break;
+            case Event::none: break;
+        }
+    }
+
+    /// delta v += sign delta_i (delta x - delta x_stop); values stay as they are.
+    void saltate(int sign) {
+        if constexpr (lanes > 0) {
+            const double delta = numerics::base(jet_.stop_damping());
+            jet_.velocity().d += (sign * delta) * (jet_.position().d - jet_.stop_position().d);
+        }
+    }
+
+    Jet jet_;
+    Law law_;
+    int order_;
+    double safety_;
+    SeriesObserver<Jet> observer_;
+    const Request* request_ = nullptr;
+    T theta_{};
+    Base elapsed_{};
+    Base duration_{};
+    Base step_{};
+    T divided_gap_{};
+    Phase phase_ = Phase::free;
+    Event event_ = Event::none;
+    Status status_ = Status::not_run;
+    bool deflate_ = false;
+    bool finished_ = false;
+    int events_ = 0;
+    long steps_ = 0;
+};
+
+}  // namespace PERCUSS_ISA
+}  // namespace percuss::flow

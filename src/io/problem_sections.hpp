@@ -1,0 +1,39 @@
+#pragma once
+/// \file
+/// Interpretation of the sections of a problem file. What is wrong goes to the troubles.
+
+#include "design/problem.hpp"
+#include "io/setting_list.hpp"
+#include "study/orbit.hpp"
+#include "study/study.hpp"
+
+#include <string_view>
+
+namespace percuss::io {
+
+/// The kind of problem told by the sections and actuator.type. Throws ProblemError for none and for mixtures.
+model::Family family_of(const SettingList& settings);
+
+/// [actuator] [material] [stop] [drive] [nondimensional] [spring-mass] into `problem`, whose family is set. Values are
+/// parsed, not yet checked against their ranges.
+void read_actuator(const SettingList& settings, design::Problem& problem, Troubles& troubles);
+
+/// [design] into `problem`, whose family and stop law are set.
+void read_design(const SettingList& settings, design::Problem& problem, Troubles& troubles);
+
+/// [optimiser], [solver] and [orbit].
+void read_optimiser(const SettingList& settings, study::OptimiserOptions& options, Troubles& troubles);
+void read_solver(const SettingList& settings, design::SolverOptions& options, Troubles& troubles);
+void read_orbit(const SettingList& settings, model::Family family, study::OrbitStudy& orbit, Troubles& troubles);
+
+/// A number for this key of this family: plain for nondimensional keys, else with an optional unit. Throws
+/// std::invalid_argument.
+double parse_key_value(model::Key key, std::string_view text);
+
+/// A key of the family by name. Throws ProblemError that names the nearest one.
+model::Key parse_key(std::string_view name, model::Family family);
+
+/// Whether the key is a drive frequency, which may be "edge".
+bool is_frequency(model::Key key);
+
+}  // namespace percuss::io

@@ -1,0 +1,109 @@
+#include "io/setting_table.hpp"
+
+#include "design/problem.hpp"
+#include "model/number_text.hpp"
+#include "optimise/solve.hpp"
+#include "study/orbit.hpp"
+#include "study/study.hpp"
+
+#include <algorithm>
+
+namespace percuss::io {
+
+namespace {
+
+SettingInfo from_model(model::Key key) {
+    const model::KeyInfo& info = model::key_info(key);
+    const bool is_frequency =
+        key == model::Key::drive_frequency || key == model::Key::nd_omega || key == model::Key::sm_omega;
+    SettingInfo setting;
+    setting.name = info.name;
+    setting.unit = info.unit == "1" ? "" : std::string(info.unit);
+    setting.allowed = allowed_range(info) + (is_frequency ? ", or edge" : "");
+    setting.fallback = info.fallback ? model::number_text(*info.fallback) : (is_frequency ? "edge" : "");
+    setting.meaning = info.meaning;
+    return setting;
+}
+
+void add_model_keys(std::vector<SettingInfo>& table, std::string_view section) {
+    for (std::size_t i = 0; i < model::key_count; ++i) {
+        const auto key = static_cast<model::Key>(i);
+        if (model::key_info(key).name.starts_with(section)) { table.push_back(from_model(key)); }
+    }
+}
+
+std::vector<SettingInfo> make_table() {
+    const design::Problem problem;
+    const study::OptimiserOptions optimiser;
+    const study::OrbitStudy orbit;
+    const auto number = [](double value) { return model::number_text(value); };
+
+    std::vector<SettingInfo> table;
+    table.push_back({"actuator.type", "", "dielectric-elastomer | spring-mass", "told by the sections present",
+                     "kind of actuator"});
+    add_model_keys(table, "actuator.");
+    add_model_keys(table, "material.");
+    table.push_back({"stop.law", "", "kelvin-voigt | no-tension | none", "kelvin-voigt",
+                     "force law of the stop; none: there is no stop"});
+    add_model_keys(table, "stop.");
+    add_model_keys(table, "drive.");
+    table.push_back({"drive.margin", "", "at least 0, below 1", number(problem.margin),
+                     "operate this fraction of the edge below it"});
+    add_model_keys(table, "nondimensional.");
+    add_model_keys(table, "spring-mass.");
+
+    table.push_back(
+        {"design.variable", "", "KEY in LOWER .. UPPER [log] [integer]", "none", "a key that may be varied", true});
+    table.push_back({"design.maximise", "", "a quantity", "none", "what to make large", true});
+    table.push_back({"design.minimise", "", "a quantity", "none", "what to make small", true});
+    table.push_back(
+        {"design.limit", "", "QUANTITY <= VALUE or QUANTITY >= VALUE", "none", "what a design must respect", true});
+    table.push_back({"design.single_stable", "", "off | orbit | sampled | refuted", "orbit",
+                     "how it is checked that the motion is the only stable one"});
+
+    table.push_back({"optimiser.method", "", alternatives(optimise::methods()), optimiser.method, "optimiser"});
+    table.push_back({"optimiser.starts", "", "whole number, at least 1", std::to_string(optimiser.starts),
+                     "local solves per layer count"});
+    table.push_back({"optimiser.samples", "", "whole number, at least 0", std::to_string(optimiser.samples),
+                     "space-filling designs looked at before, per layer count"});
+    table.push_back({"optimiser.max_evaluations", "", "whole number, at least 1",
+                     std::to_string(optimiser.max_evaluations), "budget per layer count"});
+    table.push_back({"optimiser.tolerance", "", "above 0, below 1", number(optimiser.tolerance),
+                     "KKT residual at which a point is certified"});
+
+    table.push_back({"solver.tolerance", "", "above 1e-16, below 0.01", number(problem.solver.tolerance),
+                     "relative tolerance of an integration step"});
+    table.push_back({"solver.integrator", "", "taylor | erk | cvode", problem.solver.integrator, "integrator"});
+    table.push_back({"solver.instruction_set", "", "auto | v2 | v3 | v4 | generic", problem.solver.instruction_set,
+                     "x86-64 level of the kernels"});
+
+    table.push_back({"orbit.start", "", "numbers separated by commas or blanks", "the motion reached from rest",
+                     "state at theta = 0 that Newton's method starts from"});
+    table.push_back({"orbit.period", "", "whole number, at least 1", std::to_string(orbit.period),
+                     "period of the orbit in drive cycles"});
+    return table;
+}
+
+const std::vector<SettingInfo>& table_instance() {
+    static const std::vector<SettingInfo> table = make_table();
+    return table;
+}
+
+}  // namespace
+
+std::span<const SettingInfo> setting_table() { return table_instance(); }
+
+const SettingInfo* find_setting(std::string_view name) {
+    const auto& table = table_instance();
+    const auto found =
+        std::find_if(table.begin(), table.end(), [&](const SettingInfo& info) { return info.name == name; });
+    return found == table.end() ? nullptr : &*found;
+}
+
+std::string alternatives(std::span<const std::string> names) {
+    std::string text;
+    for (const std::string& name : names) { text += (text.empty() ? "" : " | ") + name; }
+    return text;
+}
+
+}  // namespace percuss::io

@@ -1,0 +1,69 @@
+#pragma once
+/// \file
+/// Pseudo-arclength continuation of a smooth curve F(u) = 0, F: R^(n+1) -> R^n, for small n
+/// (H. B. Keller, "Numerical solution of bifurcation and nonlinear eigenvalue problems", 1977).
+
+#include "numerics/linear.hpp"
+
+#include <functional>
+
+namespace percuss::numerics {
+
+/// F and its n x (n+1) Jacobian at u; false when it cannot be evaluated there.
+using CurveFunction = std::function<bool(const SmallVector& u, SmallVector& f, SmallMatrix& jacobian)>;
+
+struct ArclengthOptions {
+    double first_step = 0.05;
+    double smallest_step = 1e-10;
+    double largest_step = 0.3;
+    double target_angle = 0.12;       ///< between consecutive tangents, rad (about 7 degrees)
+    double largest_angle = 0.35;      ///< beyond this the step is repeated with half the length
+    double largest_correction = 0.3;  ///< the corrector may move this share of the step: more means another branch
+    double tolerance = 1e-10;         ///< on |F|, relative to 1 + |u|
+    int newton_iterations = 8;
+};
+
+/// Walks along the curve: `while (walker.can_continue()) { walker.predict(); walker.correct(); walker.adapt(); }`, or
+/// `advance()` for one accepted step.
+class ArclengthWalker {
+public:
+    ArclengthWalker(CurveFunction function, ArclengthOptions options);
+
+    /// Starts from a point near the curve; the parameter is the last entry of u. `direction` is the sign of its first
+    /// change. False when Newton does not converge.
+    bool start(const SmallVector& u, double direction);
+
+    /// One accepted step; false when the step length has collapsed.
+    bool advance();
+
+    /// Goes back to the previous point and will try again with half the step. False when there is nothing to go back
+    /// to or the step has become too small.
+    bool retreat();
+
+    [[nodiscard]] const SmallVector& point() const { return u_; }
+    [[nodiscard]] const SmallVector& tangent() const { return tangent_; }
+    [[nodiscard]] const SmallMatrix& jacobian() const { return jacobian_; }
+    [[nodiscard]] double step() const { return step_; }
+    void limit_step(double largest) { step_ = std::min(step_, largest); }
+
+private:
+    enum class Correction : std::uint8_t { converged, rejected };
+    [[nodiscard]] bool can_continue() const { return step_ >= options_.smallest_step; }
+    void predict();
+    Correction correct();
+    void adapt(double angle);
+    bool solve_tangent(const SmallVector& orientation);
+
+    CurveFunction function_;
+    ArclengthOptions options_;
+    SmallVector u_, tangent_, predicted_, candidate_;
+    SmallVector f_;
+    SmallMatrix jacobian_, candidate_jacobian_;
+    SmallVector previous_u_, previous_tangent_;
+    SmallMatrix previous_jacobian_;
+    double step_ = 0.0;
+    double last_step_ = 0.0;
+    bool has_previous_ = false;
+};
+
+}  // namespace percuss::numerics

@@ -1,0 +1,150 @@
+#include "numerics/polynomial_roots.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace percuss::numerics {
+namespace {
+
+using Coefficients = std::array<double, max_degree + 1>;
+
+/// Halving stops here: two roots closer than this are one touch.
+constexpr int max_depth = 40;
+
+struct Search {
+    const double* monomial;
+    int degree;
+    int wanted;  ///< sign after the root, 0 for all
+    Roots* roots;
+    [[nodiscard]] bool full() const {
+        return roots->count == static_cast<int>(roots->at.size()) || (wanted != 0 && roots->count > 0);
+    }
+};
+
+double evaluate(const double* c, int degree, double t) {
+    double r = c[degree];
+    for (int j = degree - 1; j >= 0; --j) { r = r * t + c[j]; }
+    return r;
+}
+
+double evaluate_derivative(const double* c, int degree, double t) {
+    double r = degree * c[degree];
+    for (int j = degree - 1; j >= 1; --j) { r = r * t + j * c[j]; }
+    return degree == 0 ? 0.0 : r;
+}
+
+/// Monomial coefficients on [0,1] to Bernstein coefficients: b_i = sum_j C(i,j)/C(n,j) c_j.
+void to_bernstein(const double* c, int n, Coefficients& b) {
+    double binomial = 1.0;  // C(n, j)
+    for (int j = 0; j <= n; ++j) {
+        b[static_cast<std::size_t>(j)] = c[j] / binomial;
+        binomial = binomial * (n - j) / (j + 1);
+    }
+    for (int level = 1; level <= n; ++level) {
+        for (int i = n; i >= level; --i) { b[static_cast<std::size_t>(i)] += b[static_cast<std::size_t>(i - 1)]; }
+    }
+}
+
+int variations(const Coefficients& b, int n) {
+    int count = 0;
+    int last = 0;
+    for (int i = 0; i <= n; ++i) {
+        const double x = b[static_cast<std::size_t>(i)];
+        const int s = (x > 0.0) - (x < 0.0);
+        if (s != 0) {
+            if (last != 0 && s != last) { ++count; }
+            last = s;
+        }
+    }
+    return count;
+}
+
+/// The root between lower and upper, where the polynomial has the signs -after and after: Newton kept inside a
+/// shrinking bracket.
+double polish(const Search& search, double lower, double upper, int after) {
+    double t = 0.5 * (lower + upper);
+    for (int iteration = 0; iteration < 80; ++iteration) {
+        const double value = evaluate(search.monomial, search.degree, t);
+        if (value == 0.0) { return t; }
+        ((value > 0.0) == (after > 0) ? upper : lower) = t;
+        const double slope = evaluate_derivative(search.monomial, search.degree, t);
+        double next = t - value / slope;
+        if (!(next > lower && next < upper)) { next = 0.5 * (lower + upper); }
+        if (std::abs(next - t) <= 1e-16 || next == t) { return next; }
+        t = next;
+    }
+    return t;
+}
+
+void record(const Search& search, double t, int after) {
+    if (search.wanted != 0 && after != search.wanted) { return; }
+    Roots& r = *search.roots;
+    r.at[static_cast<std::size_t>(r.count)] = t;
+    r.sign[static_cast<std::size_t>(r.count)] = after;
+    ++r.count;
+}
+
+void isolate(const Search& search, const Coefficients& b, double lower, double width, int depth) {
+    const int n = search.degree;
+    const int changes = variations(b, n);
+    if (changes == 0 || search.full()) { return; }
+    if (changes == 1) {
+        int after = 0;
+        for (int i = n; i >= 0 && after == 0; --i) {
+            const double x = b[static_cast<std::size_t>(i)];
+            after = (x > 0.0) - (x < 0.0);
+        }
+        record(search, polish(search, lower, lower + width, after), after);
+        return;
+    }
+    if (depth == max_depth) { return; }
+    Coefficients left{};  // de Casteljau at one half
+    Coefficients right{};
+    Coefficients work = b;
+    for (int level = 0; level <= n; ++level) {
+        left[static_cast<std::size_t>(level)] = work[0];
+        right[static_cast<std::size_t>(n - level)] = work[static_cast<std::size_t>(n - level)];
+        for (int i = 0; i < n - level; ++i) {
+            work[static_cast<std::size_t>(i)] =
+                0.5 * (work[static_cast<std::size_t>(i)] + work[static_cast<std::size_t>(i + 1)]);
+        }
+    }
+    isolate(search, left, lower, 0.5 * width, depth + 1);
+    const double middle = left[static_cast<std::size_t>(n)];
+    if (middle == 0.0 && !search.full()) {  // a root exactly between the halves
+        const auto first_sign = [](const Coefficients& c, int from, int to, int step) {
+            for (int i = from; i != to; i += step) {
+                const double x = c[static_cast<std::size_t>(i)];
+                if (x != 0.0) { return x > 0.0 ? 1 : -1; }
+            }
+            return 0;
+        };
+        const int before = first_sign(left, n, -1, -1);
+        const int after = first_sign(right, 0, n + 1, 1);
+        if (before != 0 && after != 0 && before != after) { record(search, lower + 0.5 * width, after); }
+    }
+    isolate(search, right, lower + 0.5 * width, 0.5 * width, depth + 1);
+}
+
+Roots run(const double* c, int degree, int wanted) {
+    Roots roots;
+    while (degree > 0 && c[degree] == 0.0) { --degree; }
+    if (degree <= 0) { return roots; }
+    Coefficients b{};
+    to_bernstein(c, degree, b);
+    isolate({c, degree, wanted, &roots}, b, 0.0, 1.0, 0);
+    return roots;
+}
+
+}  // namespace
+
+Roots sign_changes(const double* c, int degree) { return run(c, degree, 0); }
+
+bool first_sign_change(const double* c, int degree, int sign, double& t) {
+    const Roots roots = run(c, degree, sign);
+    if (roots.count == 0) { return false; }
+    t = roots.at[0];
+    return true;
+}
+
+}  // namespace percuss::numerics

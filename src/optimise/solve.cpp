@@ -1,0 +1,185 @@
+#include "optimise/solve.hpp"
+
+#include "optimise/certificate.hpp"
+#include "optimise/ipopt_solver.hpp"
+#include "optimise/nlopt_solver.hpp"
+#include "optimise/repair.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace percuss::optimise {
+namespace {
+
+using Status = Outcome::Status;
+
+/// Null: Ipopt.
+const NloptMethod* find_method(const std::string& name) {
+    if (name == "ipopt") return nullptr;
+    const auto& table = nlopt_methods();
+    const auto found = std::find_if(table.begin(), table.end(), [&](const NloptMethod& m) { return m.name == name; });
+    if (found != table.end()) return &*found;
+    std::string message = "method = " + name + ", must be one of";
+    for (const std::string& known : methods()) message += " " + known;
+    throw std::invalid_argument(message);
+}
+
+void check_start(const Vector& start, const MemoisedNlp& nlp) {
+    if (start.size() == nlp.variables() && !start.hasNaN()) return;
+    std::ostringstream message;
+    message << "start = (" << start.transpose() << "), must be " << nlp.variables() << " numbers";
+    throw std::invalid_argument(message.str());
+}
+
+SolverAnswer run(const NloptMethod* method, Guard& guard, const Vector& start, const Options& options) {
+    return method == nullptr ? run_ipopt(guard, start, options) : run_nlopt(guard, start, *method, options);
+}
+
+/// The search of a global method on its share of the budget; returns the point to polish.
+Vector explored(MemoisedNlp& memo, const NloptMethod& method, const Vector& start, const Options& options) {
+    memo.allow(static_cast<int>(std::ceil(options.global_share * options.max_evaluations)));
+    Guard guard(memo);
+    (void)run_nlopt(guard, start, method, options);
+    (void)guard.halt();  // throws what the evaluator has thrown
+    memo.allow(options.max_evaluations);
+    if (memo.best_feasible()) return memo.best_feasible()->x;
+    return memo.least_infeasible() ? memo.least_infeasible()->x : start;
+}
+
+void fill(Outcome& outcome, const Visited& point, double feasibility_tolerance) {
+    outcome.x = point.x;
+    outcome.objective = point.objective;
+    outcome.constraints = point.constraints;
+    outcome.infeasibility = point.infeasibility;
+    outcome.feasible = point.infeasibility <= feasibility_tolerance;
+}
+
+std::optional<Visited> visit(Guard& guard, const Vector& x) {
+    if (x.size() == 0 || guard.halted()) return std::nullopt;
+    const Evaluation& here = guard(x, false);
+    if (!here.ok) return std::nullopt;
+    return Visited{guard.nlp().clip(x), here.objective, here.constraints, infeasibility_of(here.constraints)};
+}
+
+/// Whether the solver's point is to be taken rather than the archive's: feasible, and no worse than what a
+/// feasibility tolerance is worth.
+bool preferred(const Visited& point, const MemoisedNlp& memo) {
+    const double tolerance = memo.limits().feasibility_tolerance;
+    if (!(point.infeasibility <= tolerance) || !memo.best_feasible()) return false;
+    const double best = memo.best_feasible()->objective;
+    return point.objective <= best + (10 * tolerance + 1e-14) * std::max(1.0, std::abs(best));
+}
+
+double kkt_residual(Guard& guard, const Vector& x) {
+    return certify(guard(x, true), x, guard.nlp().lower(), guard.nlp().upper()).residual;
+}
+
+/// The point on which the solver ended, moved to feasibility if it is slightly off. The point that it returns is its
+/// best within its tolerance of feasibility, which can be an earlier one than the one it converged to: of the two the
+/// one with the smaller gradient of the Lagrangian.
+std::optional<Visited> solution_of(Guard& guard, const SolverAnswer& answer) {
+    std::optional<Visited> solution;
+    for (const Vector& end : {answer.x, answer.last}) {
+        std::optional<Visited> point = visit(guard, end);
+        if (point && point->infeasibility > guard.nlp().limits().feasibility_tolerance) {
+            if (const std::optional<Vector> feasible = repaired(guard, end)) point = visit(guard, *feasible);
+        }
+        if (!point || !preferred(*point, guard.nlp())) continue;
+        if (!solution || kkt_residual(guard, point->x) < kkt_residual(guard, solution->x)) solution = point;
+    }
+    return solution;
+}
+
+/// The status that the archive and the solver's word together justify.
+Outcome settle(Guard& guard, const SolverAnswer& answer) {
+    const MemoisedNlp& memo = guard.nlp();
+    const std::optional<Visited> solution = solution_of(guard, answer);
+
+    Outcome outcome;
+    outcome.message = answer.message;
+    const double tolerance = memo.limits().feasibility_tolerance;
+    if (solution) fill(outcome, *solution, tolerance);
+    else if (memo.best_feasible()) fill(outcome, *memo.best_feasible(), tolerance);
+    else if (memo.least_infeasible()) fill(outcome, *memo.least_infeasible(), tolerance);
+
+    if (const std::optional<Halt> halt = guard.halt()) {
+        outcome.status = Status::budget;
+        outcome.message = halt->what();
+    } else if (solution && answer.claim == SolverAnswer::Claim::optimum) {
+        outcome.status = Status::converged;
+    } else if (!outcome.feasible && answer.claim != SolverAnswer::Claim::none) {
+        outcome.status = Status::infeasible;
+    } else {
+        outcome.status = Status::failed;
+        if (answer.claim == SolverAnswer::Claim::optimum) outcome.message += ", but a better point had been seen";
+    }
+    return outcome;
+}
+
+}  // namespace
+
+const char* to_string(Status status) {
+    switch (status) {
+        case Status::not_run: return "not run";
+        case Status::converged: return "converged";
+        case Status::infeasible: return "infeasible";
+        case Status::budget: return "budget";
+        case Status::failed: return "failed";
+    }
+    return "unknown";
+}
+
+const std::vector<std::string>& methods() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> list = {"ipopt"};
+        for (const NloptMethod& method : nlopt_methods()) list.push_back(method.name);
+        return list;
+    }();
+    return names;
+}
+
+void check(const Options& options) {
+    (void)find_method(options.method);
+    std::ostringstream message;
+    if (!(options.tolerance > 0 && options.tolerance < 1)) {
+        message << "tolerance = " << options.tolerance << ", must be in (0, 1)";
+    } else if (!(options.global_share > 0 && options.global_share <= 1)) {
+        message << "global_share = " << options.global_share << ", must be in (0, 1]";
+    } else if (!(options.failure_penalty > 0 && std::isfinite(options.failure_penalty))) {
+        message << "failure_penalty = " << options.failure_penalty << ", must be positive and finite";
+    } else {
+        return;
+    }
+    throw std::invalid_argument(message.str());
+}
+
+bool is_global(const std::string& method) {
+    const NloptMethod* found = find_method(method);
+    return found != nullptr && found->global;
+}
+
+Outcome minimise(Nlp& nlp, const Vector& start, const Options& options) {
+    check(options);
+    const NloptMethod* method = find_method(options.method);
+    MemoisedNlp memo(nlp, {options.max_evaluations, options.feasibility_tolerance, options.stop});
+    check_start(start, memo);
+
+    Vector from = memo.clip(start);
+    if (method != nullptr && method->global) {
+        from = explored(memo, *method, from, options);
+        method = find_method("slsqp");
+    }
+    Guard guard(memo);
+    SolverAnswer answer;
+    if (guard(from, true).ok) answer = run(method, guard, from, options);
+    else answer.message = "the start could not be evaluated";
+
+    Outcome outcome = settle(guard, answer);
+    if (outcome.x.size() == 0) outcome.x = memo.clip(start);
+    outcome.evaluations = memo.evaluations();
+    return outcome;
+}
+
+}  // namespace percuss::optimise

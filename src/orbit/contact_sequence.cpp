@@ -1,0 +1,295 @@
+#include "orbit/contact_sequence.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace percuss::orbit {
+namespace {
+
+using numerics::Matrix;
+using numerics::Vector;
+using std::numbers::pi;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// Offsets inside one contact's block of unknowns.
+enum Offset : std::uint8_t { at_speed = 0, at_phase = 1, at_duration = 2, at_rest = 3 };
+
+flow::State entry_state(const flow::System& system, const ContactUnknowns& contact) {
+    flow::State y{};
+    y[0] = system.stop_position();
+    y[1] = contact.speed;
+    for (int k = 2; k < system.states(); ++k) { y[index(k)] = contact.rest[index(k - 2)]; }
+    return y;
+}
+
+/// Phase from the end of contact i to the entry of the next one.
+double flight_duration(const ContactSequence& sequence, std::size_t i) {
+    const ContactUnknowns& here = sequence.contacts[i];
+    const bool last = i + 1 == sequence.contacts.size();
+    const double next = last ? sequence.contacts[0].phase + 2.0 * pi * sequence.period : sequence.contacts[i + 1].phase;
+    return next - here.phase - here.duration;
+}
+
+/// One contact and the flight after it, with everything's derivatives placed in the big matrices.
+class Leg {
+public:
+    Leg(const flow::System& system, const ContactSequence& sequence, std::size_t i,
+        std::span<const flow::ParameterVector> directions)
+        : system_(system),
+          sequence_(sequence),
+          i_(i),
+          directions_(directions),
+          n_(system.states()) {}
+
+    bool run() { return run_contact() && run_flight(); }
+
+    void place(SequenceResidual& out) const {
+        const int block = n_ + 1;
+        const int row = static_cast<int>(i_) * block;
+        const int here = row;
+        const int next = (i_ + 1 == sequence_.contacts.size()) ? 0 : here + block;
+        const bool on_force = system_.integrator->info().releases_on_force;
+        const flow::Sensitive& closing = on_force ? contact_.divided_force : contact_.divided_gap;
+        const int first_parameter = n_;  // lanes of the contact: speed, rest..., phase, parameters
+        out.value[row] = closing.value;
+        out.by_unknowns(row, here + at_speed) += closing.d[0];
+        for (int k = 2; k < n_; ++k) { out.by_unknowns(row, here + at_rest + k - 2) += closing.d[index(k - 1)]; }
+        out.by_unknowns(row, here + at_phase) += closing.d[index(n_ - 1)];
+        out.by_unknowns(row, here + at_duration) += closing_rate(on_force);
+        for (std::size_t p = 0; p < directions_.size(); ++p) {
+            out.by_directions(row, static_cast<int>(p)) = closing.d[index(first_parameter) + p];
+        }
+
+        // Flight residual: x - x_stop, v - v', q - q'.
+        const ContactUnknowns& target = sequence_.contacts[(i_ + 1) % sequence_.contacts.size()];
+        const flow::State wanted = entry_state(system_, target);
+        for (int k = 0; k < n_; ++k) {
+            const int r = row + 1 + k;
+            const auto& d = flight_.state_d[index(k)];  // lanes: states, phase, parameters
+            out.value[r] = flight_.state[index(k)] - wanted[index(k)];
+            const auto through = [&](int lane_of_contact) {
+                double sum = 0.0;
+                for (int m = 0; m < n_; ++m) {
+                    sum += d[index(m)] * contact_.state_d[index(m)][index(lane_of_contact)];
+                }
+                return sum;
+            };
+            const double by_phase = d[index(n_)];
+            const double rate = flight_.rate[index(k)];
+            double by_end = by_phase;  // the flight starts later when the contact lasts longer
+            for (int m = 0; m < n_; ++m) { by_end += d[index(m)] * contact_.rate[index(m)]; }
+            out.by_unknowns(r, here + at_speed) += through(0);
+            for (int m = 2; m < n_; ++m) { out.by_unknowns(r, here + at_rest + m - 2) += through(m - 1); }
+            out.by_unknowns(r, here + at_phase) += through(n_ - 1) + by_phase - rate;
+            out.by_unknowns(r, here + at_duration) += by_end - rate;
+            out.by_unknowns(r, next + at_phase) += rate;
+            if (k == 1) { out.by_unknowns(r, next + at_speed) -= 1.0; }
+            if (k >= 2) { out.by_unknowns(r, next + at_rest + k - 2) -= 1.0; }
+            for (std::size_t p = 0; p < directions_.size(); ++p) {
+                double sum = through(first_parameter + static_cast<int>(p)) + d[index(n_ + 1) + p];
+                if (k == 0) { sum -= system_.integrator->stop_position_derivative(system_.parameters, directions_[p]); }
+                out.by_directions(r, static_cast<int>(p)) = sum;
+            }
+        }
+    }
+
+private:
+    bool run_contact() {
+        const ContactUnknowns& contact = sequence_.contacts[i_];
+        std::array<flow::Direction, flow::max_lanes> lanes{};
+        lanes[0].state[1] = 1.0;
+        for (int k = 2; k < n_; ++k) { lanes[index(k - 1)].state[index(k)] = 1.0; }
+        lanes[index(n_ - 1)].phase = 1.0;
+        for (std::size_t p = 0; p < directions_.size(); ++p) {
+            flow::Direction& lane = lanes[index(n_) + p];
+            lane.parameter = directions_[p];
+            lane.state[0] = system_.integrator->stop_position_derivative(system_.parameters, directions_[p]);
+        }
+        flow::Request request;
+        request.state = entry_state(system_, contact);
+        request.theta = contact.phase;
+        request.duration = contact.duration;
+        request.stop = flow::StopMode::held;
+        request.directions = std::span(lanes.data(), index(n_) + directions_.size());
+        system_.run(request, contact_);
+        return contact_.status == flow::Status::ok;
+    }
+
+    bool run_flight() {
+        const ContactUnknowns& contact = sequence_.contacts[i_];
+        std::array<flow::Direction, flow::max_lanes> lanes{};
+        for (int k = 0; k < n_; ++k) { lanes[index(k)].state[index(k)] = 1.0; }
+        lanes[index(n_)].phase = 1.0;
+        for (std::size_t p = 0; p < directions_.size(); ++p) { lanes[index(n_ + 1) + p].parameter = directions_[p]; }
+        flow::Request request;
+        request.state = contact_.state;
+        request.theta = contact.phase + contact.duration;
+        request.duration = flight_duration(sequence_, i_);
+        request.stop = flow::StopMode::off;
+        request.directions = std::span(lanes.data(), index(n_ + 1) + directions_.size());
+        system_.run(request, flight_);
+        return flight_.status == flow::Status::ok;
+    }
+
+    /// d(closing)/d(duration).
+    [[nodiscard]] double closing_rate(bool on_force) const {
+        const double duration = sequence_.contacts[i_].duration;
+        const flow::SystemInfo& info = system_.integrator->info();
+        const double k = system_.parameters[index(info.stiffness)];
+        const double c = system_.parameters[index(info.damping)];
+        const double gap_rate = gap_slope(duration);
+        if (!on_force) { return gap_rate; }
+        const double sign = duration < 0.0 ? -1.0 : 1.0;
+        const double scale = k * std::abs(duration) + c;
+        const double force_rate = k * contact_.rate[0] + c * contact_.rate[1];
+        return force_rate / scale - contact_.divided_force.value * k * sign / scale;
+    }
+    /// d/dt of (x(t) - x_stop)/t: (x'(t) - (x - x_stop)/t)/t; its limit x''/2 where t is too small for the quotient.
+    [[nodiscard]] double gap_slope(double duration) const {
+        const double slope = contact_.rate[0] - contact_.divided_gap.value;
+        if (std::abs(duration) > 1e-6) { return slope / duration; }
+        const double w = system_.omega();
+        return 0.5 * contact_.rate[1] / w;
+    }
+
+    const flow::System& system_;
+    const ContactSequence& sequence_;
+    std::size_t i_;
+    std::span<const flow::ParameterVector> directions_;
+    int n_;
+    flow::Result contact_, flight_;
+};
+
+}  // namespace
+
+Vector pack(const flow::System& system, const ContactSequence& sequence) {
+    Vector z(sequence.unknowns(system));
+    int at = 0;
+    for (const ContactUnknowns& contact : sequence.contacts) {
+        z[at + at_speed] = contact.speed;
+        z[at + at_phase] = contact.phase;
+        z[at + at_duration] = contact.duration;
+        for (int k = 2; k < system.states(); ++k) { z[at + at_rest + k - 2] = contact.rest[index(k - 2)]; }
+        at += sequence.unknowns_per_contact(system);
+    }
+    return z;
+}
+
+ContactSequence unpack(const flow::System& system, const Vector& z, int period) {
+    ContactSequence sequence;
+    sequence.period = period;
+    const int block = sequence.unknowns_per_contact(system);
+    for (int at = 0; at < z.size(); at += block) {
+        ContactUnknowns contact;
+        contact.speed = z[at + at_speed];
+        contact.phase = z[at + at_phase];
+        contact.duration = z[at + at_duration];
+        for (int k = 2; k < system.states(); ++k) { contact.rest[index(k - 2)] = z[at + at_rest + k - 2]; }
+        sequence.contacts.push_back(contact);
+    }
+    return sequence;
+}
+
+std::optional<SequenceResidual> evaluate(const flow::System& system, const ContactSequence& sequence,
+                                         std::span<const flow::ParameterVector> directions) {
+    if (directions.size() > 3) { throw std::invalid_argument("contact sequence: more than 3 directions"); }
+    const int size = sequence.unknowns(system);
+    SequenceResidual out;
+    out.value = Vector::Zero(size);
+    out.by_unknowns = Matrix::Zero(size, size);
+    out.by_directions = Matrix::Zero(size, static_cast<int>(directions.size()));
+    for (std::size_t i = 0; i < sequence.contacts.size(); ++i) {
+        Leg leg(system, sequence, i, directions);
+        if (!leg.run()) { return std::nullopt; }
+        leg.place(out);
+    }
+    return out;
+}
+
+std::optional<ContactSequence> sequence_of(const flow::System& system, const Orbit& orbit) {
+    ContactSequence sequence;
+    sequence.period = orbit.map.period;
+    for (const flow::Contact& met : orbit.contacts) {
+        if (met.open_in || met.open_out) { return std::nullopt; }
+        ContactUnknowns contact;
+        contact.speed = met.state_in[1];
+        contact.phase = met.theta_in;
+        contact.duration = met.theta_out - met.theta_in;
+        for (int k = 2; k < system.states(); ++k) { contact.rest[index(k - 2)] = met.state_in[index(k)]; }
+        sequence.contacts.push_back(contact);
+    }
+    if (sequence.contacts.empty()) { return std::nullopt; }
+    return sequence;
+}
+
+SequenceSolution solve_sequence(const flow::System& system, const ContactSequence& guess) {
+    SequenceSolution solution;
+    Vector z = pack(system, guess);
+    for (solution.iterations = 1; solution.iterations <= 20; ++solution.iterations) {
+        const auto r = evaluate(system, unpack(system, z, guess.period), {});
+        if (!r) { return solution; }
+        Vector step = r->by_unknowns.partialPivLu().solve(-r->value);
+        if (!step.allFinite()) { return solution; }
+        solution.residual = r->value.norm();
+        const double limit = 0.3 * (1.0 + z.norm());
+        const bool small = step.norm() <= 1e-10 * (1.0 + z.norm());
+        if (step.norm() > limit) { step *= limit / step.norm(); }
+        z += step;
+        if (small && solution.residual <= 1e-10) {
+            solution.ok = true;
+            break;
+        }
+    }
+    solution.sequence = unpack(system, z, guess.period);
+    return solution;
+}
+
+SpeedSolution solve_at_speed(const flow::System& system, const ContactSequence& guess, double omega, double speed) {
+    SpeedSolution solution;
+    ContactSequence start = guess;
+    start.contacts[0].speed = speed;
+    Vector z = pack(system, start);
+    z[at_speed] = omega;  // this place holds the frequency while the speed is given
+    const flow::ParameterVector by_omega = unit_direction(system.integrator->info().omega);
+    for (int iteration = 0; iteration < 20; ++iteration) {
+        const double w = z[at_speed];
+        if (!(w > 0.0)) { return solution; }
+        Vector full = z;
+        full[at_speed] = speed;
+        const auto r = evaluate(system.at_omega(w), unpack(system, full, guess.period), {&by_omega, 1});
+        if (!r) { return solution; }
+        Matrix jacobian = r->by_unknowns;
+        jacobian.col(at_speed) = r->by_directions.col(0);
+        const auto lu = jacobian.partialPivLu();
+        const Vector step = lu.solve(-r->value);
+        if (!step.allFinite()) { return solution; }
+        z += step;
+        if (step.norm() <= 1e-11 * (1.0 + z.norm()) && r->value.norm() <= 1e-10) {
+            solution.slope = lu.solve(-r->by_unknowns.col(at_speed))[at_speed];
+            solution.ok = true;
+            break;
+        }
+    }
+    solution.omega = z[at_speed];
+    z[at_speed] = speed;
+    solution.sequence = unpack(system, z, guess.period);
+    return solution;
+}
+
+std::optional<flow::State> state_at(const flow::System& system, const ContactSequence& sequence, double phase) {
+    const ContactUnknowns& first = sequence.contacts.front();
+    flow::Request request;
+    request.state = entry_state(system, first);
+    request.theta = first.phase;
+    request.duration = phase - first.phase;
+    request.stop = flow::StopMode::off;
+    flow::Result result;
+    if (request.duration > 0.0) { return std::nullopt; }  // only back along the flight before the first contact
+    system.run(request, result);
+    if (result.status != flow::Status::ok) { return std::nullopt; }
+    return result.state;
+}
+
+}  // namespace percuss::orbit

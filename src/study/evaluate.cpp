@@ -1,0 +1,47 @@
+#include "study/evaluate.hpp"
+
+#include "design/evaluate.hpp"
+
+#include <chrono>
+
+namespace percuss::study {
+namespace {
+
+Ending ending_of(design::EvaluationStatus status) {
+    switch (status) {
+        case design::EvaluationStatus::ok:
+        case design::EvaluationStatus::not_unique: return Ending::verified;
+        case design::EvaluationStatus::no_impact: return Ending::infeasible;
+        default: return Ending::some_failed;
+    }
+}
+
+}  // namespace
+
+std::vector<model::Key> gradient_keys(const design::Problem& problem) {
+    std::vector<model::Key> keys;
+    for (const design::DesignVariable& variable : problem.variables) { keys.push_back(variable.key); }
+    if (!keys.empty()) { return keys; }
+    const model::Specification& spec = problem.actuator;
+    for (model::Key key : model::keys_of(spec.family)) {
+        if (spec.has(key)) { keys.push_back(key); }
+    }
+    return keys;
+}
+
+EvaluateStudyResult run_evaluate(const StudyProblem& problem, bool gradients) {
+    const auto start = std::chrono::steady_clock::now();
+    EvaluateStudyResult result;
+    const design::Evaluator evaluator(problem.design);
+    design::Demand demand;
+    const auto quantities = design::reported_quantities(problem.design.actuator.family);
+    demand.quantities.assign(quantities.begin(), quantities.end());
+    if (gradients) { demand.gradients = gradient_keys(problem.design); }
+    demand.error_estimates = true;
+    result.evaluation = evaluator.evaluate(demand);
+    result.ending = ending_of(result.evaluation.status);
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+}  // namespace percuss::study

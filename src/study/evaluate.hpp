@@ -1,0 +1,19 @@
+#pragma once
+/// \file
+/// Verb `evaluate`.
+#include "study/study.hpp"
+
+namespace percuss::study {
+
+struct EvaluateStudyResult {
+    Ending ending = Ending::not_run;  ///< verified: status ok or not-unique; infeasible: no-impact; else some_failed
+    design::Evaluation evaluation;
+    double seconds = 0.0;
+};
+/// gradients: with respect to the problem's design variables; without any, to every key of the family that has a
+/// derivative.
+EvaluateStudyResult run_evaluate(const StudyProblem& problem, bool gradients);
+/// The keys meant above.
+std::vector<model::Key> gradient_keys(const design::Problem& problem);
+
+}  // namespace percuss::study

@@ -1,0 +1,317 @@
+// Runs the program itself, named by the environment variable PERCUSS_BIN.
+
+#include "scratch_folder.hpp"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <sys/wait.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+using percuss::tests::read_file;
+using percuss::tests::ScratchFolder;
+
+struct Outcome {
+    int exit_code = -1;
+    std::string out;
+    std::string err;
+};
+
+std::string environment(const char* name, const std::string& fallback) {
+    const char* value = std::getenv(name);
+    return value == nullptr ? fallback : value;
+}
+
+std::string quoted(const std::string& word) {
+    std::string text = "'";
+    for (const char c : word) { text += c == '\'' ? "'\\''" : std::string(1, c); }
+    return text + "'";
+}
+
+/// Runs the program inside a folder.
+Outcome run(const ScratchFolder& folder, const std::vector<std::string>& arguments) {
+    const ScratchFolder streams;
+    std::string command =
+        "cd " + quoted(folder.path().string()) + " && " + quoted(environment("PERCUSS_BIN", "percuss"));
+    for (const std::string& argument : arguments) { command += " " + quoted(argument); }
+    command += " >" + quoted((streams.path() / "out").string()) + " 2>" + quoted((streams.path() / "err").string());
+    const int status = std::system(command.c_str());
+    Outcome outcome;
+    outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    outcome.out = read_file(streams.path() / "out");
+    outcome.err = read_file(streams.path() / "err");
+    return outcome;
+}
+
+std::string shipped(const std::string& name) {
+    return (fs::absolute(environment("PERCUSS_SOURCE_DIR", ".")) / "problems" / name).string();
+}
+
+long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+const std::string nondimensional = "[nondimensional]\nlambda_p = 1.1\nmu_ratio = 1\nalpha_A = 3\nalpha_B = 2\n"
+                                   "delta_A = 0.3\ndelta_B = 60\nl = 0.8\nk = 2500\ndelta_i = 2\nphi_pp = 0.4\n";
+
+}  // namespace
+
+TEST_CASE("version and help") {
+    const ScratchFolder folder;
+    const Outcome version = run(folder, {"--version"});
+    CHECK(version.exit_code == 0);
+    CHECK(version.out.starts_with("percuss "));
+    const Outcome help = run(folder, {"--help"});
+    CHECK(help.exit_code == 0);
+    for (const char* word : {"check", "orbit", "evaluate", "optimise", "--time-limit"}) { CHECK(has(help.out, word)); }
+    for (const char* verb : {"check", "orbit", "evaluate", "optimise", "optimize"}) {
+        const Outcome verb_help = run(folder, {verb, "--help"});
+        CHECK(verb_help.exit_code == 0);
+        CHECK(has(verb_help.out, "stop.gap"));
+        CHECK(has(verb_help.out, "nondimensional.delta_i"));
+        CHECK(has(verb_help.out, "design.limit"));
+        CHECK(verb_help.err.empty());
+    }
+}
+
+TEST_CASE("wrong usage is told in one line") {
+    const ScratchFolder folder;
+    const std::string duffing = shipped("duffing.ini");
+    const struct {
+        std::vector<std::string> arguments;
+        std::string part;
+    } cases[] = {
+        {{}, "verb"},
+        {{"evalute", duffing}, "nearest one is evaluate"},
+        {{"branch", duffing}, "not available in this version"},
+        {{"pareto", duffing}, "not available in this version"},
+        {{"evaluate"}, "needs a problem file"},
+        {{"evaluate", duffing, "another"}, "another"},
+        {{"evaluate", duffing, "--jsn"}, "nearest known option is --json"},
+        {{"evaluate", duffing, "--stop.gapp", "1"}, "nearest known option is --stop.gap"},
+        {{"evaluate", duffing, "--stop.gap"}, "stop.gap"},
+        {{"evaluate", duffing, "--seed", "-1"}, "--seed"},
+        {{"evaluate", duffing, "--jobs", "0"}, "--jobs"},
+        {{"evaluate", duffing, "--time-limit", "0"}, "--time-limit"},
+        {{"evaluate", duffing, "--json", "--json"}, "twice"},
+        {{"evaluate", duffing, "--out", ""}, "--out"},
+        {{"optimise", duffing, "--gradients"}, "unknown option --gradients"},
+        {{"--verbose"}, "--verbose"},
+        {{"evaluate", duffing, "-x"}, "-x"},
+    };
+    for (const auto& each : cases) {
+        const Outcome outcome = run(folder, each.arguments);
+        CAPTURE(outcome.err);
+        CAPTURE(each.part);
+        CHECK(outcome.exit_code == 2);
+        CHECK(lines(outcome.err) == 1);
+        CHECK(has(outcome.err, each.part));
+        CHECK(outcome.out.empty());
+    }
+    CHECK(fs::is_empty(folder.path()));
+}
+
+TEST_CASE("bad input ends with status 2, one line and no results folder") {
+    const std::string gap = "g = 0.1\n";
+    const struct {
+        std::string text;
+        std::vector<std::string> options;
+        std::string part;
+    } cases[] = {
+        {nondimensional + gap + "gg = 3\n", {}, "nondimensional.gg"},             // unknown key
+        {nondimensional, {}, "nondimensional.g is missing"},                      // missing key
+        {nondimensional + gap, {"--nondimensional.omega", "60 Hz"}, "60 Hz"},     // unit where none is allowed
+        {nondimensional + gap, {"--nondimensional.omega", "nan"}, "nan"},         // NaN
+        {nondimensional + gap, {"--nondimensional.omega", "0"}, "omega = 0"},     // frequency 0
+        {nondimensional + "g = -0.1\n", {}, "nondimensional.g = -0.1"},           // gap below zero
+        {nondimensional + gap, {"--nondimensional.k", "-1"}, "k = -1"},           // negative stiffness
+        {nondimensional + gap, {"--solver.tolerance", "0"}, "solver.tolerance"},  // tolerance 0
+        {nondimensional + gap, {"--optimiser.tolerance", "0"}, "optimiser.tolerance"},
+        {nondimensional + gap, {"--design.variable", "nondimensional.g in 0.2 .. 0.1"}, "reversed"},
+        {nondimensional + gap + "line without meaning\n", {}, "line without meaning"},
+        {nondimensional + gap, {"--design.maximise", "apparent_power"}, "apparent_power"},
+        {nondimensional + gap, {"--stop.law", "none"}, "stop.law"},
+        {"", {}, "no actuator"},
+    };
+    for (const char* verb : {"evaluate", "optimise", "check"}) {
+        for (const auto& each : cases) {
+            const ScratchFolder folder;
+            const fs::path file = folder.write("bad.ini", each.text);
+            std::vector<std::string> arguments = {verb, file.string()};
+            arguments.insert(arguments.end(), each.options.begin(), each.options.end());
+            const Outcome outcome = run(folder, arguments);
+            CAPTURE(verb);
+            CAPTURE(each.text);
+            CAPTURE(outcome.err);
+            CHECK(outcome.exit_code == 2);
+            CHECK(lines(outcome.err) == 1);
+            CHECK(has(outcome.err, each.part));
+            CHECK_FALSE(fs::exists(folder.path() / "results"));
+        }
+    }
+}
+
+TEST_CASE("bad values for the shipped actuator") {
+    const struct {
+        std::string option;
+        std::string value;
+        std::string part;
+    } cases[] = {
+        {"actuator.moving_mass", "-2 g", "actuator.moving_mass = -0.002 kg"},
+        {"stop.stiffness", "-1 N/mm", "stop.stiffness = -1000 N/m"},
+        {"stop.gap", "-0.1 mm", "stop.gap = -0.0001 m"},
+        {"stop.gap", "5 kg", "dimension of m"},
+        {"drive.frequency", "0 Hz", "drive.frequency = 0 Hz"},
+        {"drive.frequency", "3600 rpm", "angle"},
+        {"actuator.outer_radius", "3 mm", "inner_radius"},
+        {"design.limit", "amplitude <= 1 kg", "dimension of m"},
+        {"nondimensional.omega", "1.9", "nondimensional.omega"},
+        {"drive.voltage", "1e400 V", "1e400 V"},
+    };
+    for (const auto& each : cases) {
+        const ScratchFolder folder;
+        const Outcome outcome =
+            run(folder, {"evaluate", shipped("wu2022-actuator.ini"), "--" + each.option, each.value});
+        CAPTURE(outcome.err);
+        CAPTURE(each.part);
+        CHECK(outcome.exit_code == 2);
+        CHECK(lines(outcome.err) == 1);
+        CHECK(has(outcome.err, each.option));
+        CHECK(has(outcome.err, each.part));
+        CHECK(fs::is_empty(folder.path()));
+    }
+    const ScratchFolder folder;
+    CHECK(run(folder, {"evaluate", "absent.ini"}).exit_code == 2);
+    CHECK(run(folder, {"evaluate", folder.path().string()}).exit_code == 2);
+    CHECK(run(folder, {"orbit", shipped("wu2022-actuator.ini")}).exit_code == 2);     // no frequency
+    CHECK(run(folder, {"optimise", shipped("wu2022-actuator.ini")}).exit_code == 2);  // nothing to optimise
+    CHECK(fs::is_empty(folder.path()));
+}
+
+TEST_CASE("check prints every shipped problem and leaves nothing behind") {
+    for (const char* name :
+         {"wu2022-nondimensional.ini", "wu2022-actuator.ini", "crawler.ini", "soft-impact.ini", "duffing.ini"}) {
+        const ScratchFolder folder;
+        const Outcome plain = run(folder, {"check", shipped(name)});
+        CAPTURE(plain.err);
+        CHECK(plain.exit_code == 0);
+        CHECK(plain.err.empty());
+        CHECK(has(plain.out, "Nothing is missing"));
+        const Outcome json = run(folder, {"check", shipped(name), "--json"});
+        const auto document = nlohmann::json::parse(json.out);
+        CHECK(document.at("schema") == "percuss/check/1");
+        CHECK(document.at("troubles").empty());
+        CHECK(fs::is_empty(folder.path()));
+    }
+}
+
+TEST_CASE("check marks options, defaults and troubles") {
+    const ScratchFolder folder;
+    const Outcome outcome = run(
+        folder, {"check", shipped("wu2022-actuator.ini"), "--stop.gap", "-1 mm", "--drive.voltage", "2 kV", "--json"});
+    CHECK(outcome.exit_code == 2);
+    CHECK(lines(outcome.err) == 1);
+    const auto settings = nlohmann::json::parse(outcome.out).at("settings");
+    CHECK(settings.at("drive.voltage").at("value") == 2000.0);
+    CHECK(settings.at("drive.voltage").at("origin") == "option");
+    CHECK(settings.at("stop.stiffness").at("origin") == "file");
+    CHECK(settings.at("solver.integrator").at("origin") == "default");
+    CHECK(has(settings.at("stop.gap").at("trouble"), "out of range"));
+}
+
+TEST_CASE("orbit writes a results folder and one document") {
+    const ScratchFolder folder;
+    const Outcome outcome = run(folder, {"orbit", shipped("duffing.ini"), "--json", "--seed", "7"});
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const auto document = nlohmann::json::parse(outcome.out);
+    CHECK(document.at("schema") == "percuss/orbit/1");
+    CHECK(document.at("units") == "si");
+    CHECK(document.at("orbit").at("state").size() == 2);
+    CHECK_FALSE(document.at("operating_point").contains("edge_omega"));
+    CHECK(document.at("quantities").contains("rig_force"));
+    CHECK_FALSE(document.at("quantities").contains("electric_field"));
+
+    const fs::path results = folder.path() / "results" / "duffing-orbit";
+    CHECK(read_file(results / "result.json") == outcome.out);
+    const auto manifest = nlohmann::json::parse(read_file(results / "manifest.json"));
+    CHECK(manifest.at("state") == "finished");
+    CHECK(manifest.at("verb") == "orbit");
+    CHECK(manifest.at("seed") == 7);
+    CHECK(manifest.at("problem").at("name") == "duffing");
+    CHECK(manifest.at("problem").at("hash").get<std::string>().size() == 16);
+    CHECK_FALSE(manifest.at("instruction_set").get<std::string>().empty());
+    for (const auto& file : manifest.at("files")) { CHECK(fs::exists(results / file.get<std::string>())); }
+    CHECK(has(read_file(results / "quantities.csv"), "amplitude [m]"));
+    CHECK(has(read_file(results / "report.html"), "</html>"));
+    for (const auto& entry : fs::directory_iterator(results)) { CHECK(entry.path().extension() != ".partial"); }
+}
+
+TEST_CASE("results folders are replaced only when they may be") {
+    const ScratchFolder folder;
+    const std::string duffing = shipped("duffing.ini");
+    const fs::path results = folder.path() / "here";
+    const std::vector<std::string> again = {"orbit", duffing, "--out", "here", "--quiet"};
+    REQUIRE(run(folder, again).exit_code == 0);
+
+    // A finished run of the same verb and problem: replaced, foreign files stay.
+    folder.write("here/notes.txt", "mine");
+    const Outcome replaced = run(folder, again);
+    CHECK(replaced.exit_code == 0);
+    CHECK(replaced.err.empty());
+    CHECK(read_file(results / "notes.txt") == "mine");
+
+    // The same folder for another verb.
+    const Outcome other = run(folder, {"evaluate", duffing, "--out", "here"});
+    CHECK(other.exit_code == 2);
+    CHECK(lines(other.err) == 1);
+    CHECK(has(other.err, "left alone"));
+
+    // An unfinished run.
+    std::string manifest = read_file(results / "manifest.json");
+    manifest.replace(manifest.find("finished"), 8, "started");
+    folder.write("here/manifest.json", manifest);
+    const Outcome unfinished = run(folder, again);
+    CHECK(unfinished.exit_code == 2);
+    CHECK(has(unfinished.err, "--force"));
+    CHECK(read_file(results / "manifest.json") == manifest);
+    auto forced = again;
+    forced.emplace_back("--force");
+    CHECK(run(folder, forced).exit_code == 0);
+    CHECK(has(read_file(results / "manifest.json"), "\"finished\""));
+
+    // Folders and files that are not ours.
+    fs::create_directory(folder.path() / "foreign");
+    folder.write("foreign/data.txt", "data");
+    CHECK(run(folder, {"orbit", duffing, "--out", "foreign", "--force"}).exit_code == 2);
+    CHECK(read_file(folder.path() / "foreign" / "data.txt") == "data");
+    folder.write("plain", "file");
+    CHECK(run(folder, {"orbit", duffing, "--out", "plain"}).exit_code == 2);
+    CHECK(read_file(folder.path() / "plain") == "file");
+
+    // An empty folder is as good as none; "none" writes nothing.
+    fs::create_directory(folder.path() / "empty");
+    CHECK(run(folder, {"orbit", duffing, "--out", "empty"}).exit_code == 0);
+    const ScratchFolder clean;
+    CHECK(run(clean, {"orbit", duffing, "--out", "none"}).exit_code == 0);
+    CHECK(fs::is_empty(clean.path()));
+}
+
+TEST_CASE("readable output names quantities, units and how uniqueness was checked") {
+    const ScratchFolder folder;
+    const Outcome outcome = run(folder, {"orbit", shipped("duffing.ini"), "--gradients"});
+    CHECK(outcome.exit_code == 0);
+    CHECK(has(outcome.out, "amplitude"));
+    CHECK(has(outcome.out, "multiplier"));
+    CHECK(has(outcome.out, "uniqueness: "));
+    CHECK(has(outcome.out, "Gradients"));
+    CHECK(has(outcome.err, "results/duffing-orbit"));
+    CHECK(has(read_file(folder.path() / "results" / "duffing-orbit" / "gradients.csv"), "d(amplitude)"));
+}
