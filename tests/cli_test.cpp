@@ -35,11 +35,11 @@ std::string quoted(const std::string& word) {
     return text + "'";
 }
 
-/// Runs the program inside a folder.
-Outcome run(const ScratchFolder& folder, const std::vector<std::string>& arguments) {
+/// Runs the program inside a folder; `prefix` stands before it in the shell command.
+Outcome run(const ScratchFolder& folder, const std::vector<std::string>& arguments, const std::string& prefix = "") {
     const ScratchFolder streams;
     std::string command =
-        "cd " + quoted(folder.path().string()) + " && " + quoted(environment("PERCUSS_BIN", "percuss"));
+        "cd " + quoted(folder.path().string()) + " && " + prefix + " " + quoted(environment("PERCUSS_BIN", "percuss"));
     for (const std::string& argument : arguments) { command += " " + quoted(argument); }
     command += " >" + quoted((streams.path() / "out").string()) + " 2>" + quoted((streams.path() / "err").string());
     const int status = std::system(command.c_str());
@@ -290,7 +290,9 @@ TEST_CASE("results folders are replaced only when they may be") {
     // Folders and files that are not ours.
     fs::create_directory(folder.path() / "foreign");
     folder.write("foreign/data.txt", "data");
-    CHECK(run(folder, {"orbit", duffing, "--out", "foreign", "--force"}).exit_code == 2);
+    const Outcome foreign = run(folder, {"orbit", duffing, "--out", "foreign", "--force"});
+    CHECK(foreign.exit_code == 2);
+    CHECK(has(foreign.err, "not a results folder"));
     CHECK(read_file(folder.path() / "foreign" / "data.txt") == "data");
     folder.write("plain", "file");
     CHECK(run(folder, {"orbit", duffing, "--out", "plain"}).exit_code == 2);
@@ -314,4 +316,31 @@ TEST_CASE("readable output names quantities, units and how uniqueness was checke
     CHECK(has(outcome.out, "Gradients"));
     CHECK(has(outcome.err, "results/duffing-orbit"));
     CHECK(has(read_file(folder.path() / "results" / "duffing-orbit" / "gradients.csv"), "d(amplitude)"));
+}
+
+TEST_CASE("optimise that is cut short keeps its results so far") {
+    const struct {
+        std::string prefix;
+        std::vector<std::string> options;
+        int exit_code;
+        std::string state;
+    } cases[] = {
+        {"", {"--time-limit", "0.3"}, 4, "finished"},
+        {"timeout --preserve-status --signal=INT 1", {}, 130, "interrupted"},
+    };
+    for (const auto& each : cases) {
+        const ScratchFolder folder;
+        std::vector<std::string> arguments = {"optimise", shipped("crawler.ini"), "--json"};
+        arguments.insert(arguments.end(), each.options.begin(), each.options.end());
+        const Outcome outcome = run(folder, arguments, each.prefix);
+        CAPTURE(outcome.err);
+        CAPTURE(each.state);
+        CHECK(outcome.exit_code == each.exit_code);
+        CHECK(nlohmann::json::parse(outcome.out).at("schema") == "percuss/optimise/1");
+        const fs::path results = folder.path() / "results" / "crawler-optimise";
+        const auto manifest = nlohmann::json::parse(read_file(results / "manifest.json"));
+        CHECK(manifest.at("state") == each.state);
+        CHECK(has(read_file(results / "evaluations.csv"), "stop.gap [m]"));
+        CHECK(fs::exists(results / "report.html"));
+    }
 }

@@ -21,7 +21,7 @@ using Status = Outcome::Status;
 
 TEST_CASE("methods with derivatives solve problems with known answers") {
     const auto make = {rosenbrock_disc, hs35, hs43, hs71, hs100, one_variable, rosenbrock_with_holes};
-    for (const char* method : {"ipopt", "slsqp", "ccsaq"}) {
+    for (const std::string method : {"ipopt", "slsqp", "ccsaq"}) {
         int number = 0;
         for (const auto& problem : make) {
             CAPTURE(method);
@@ -35,7 +35,7 @@ TEST_CASE("methods with derivatives solve problems with known answers") {
             CHECK_FALSE(known.nlp->outside);
             // ipopt and slsqp converge fast: 1e-7 is the digits of the known x and the conditioning (Hessians up to
             // 1e3) times the tolerance 1e-8. ccsaq converges linearly and judges by its steps.
-            const bool fast = std::string(method) != "ccsaq";
+            const bool fast = method != "ccsaq";
             CHECK((outcome.x - known.x).lpNorm<Eigen::Infinity>() < (fast ? 1e-6 : 1e-4));
             CHECK(outcome.objective == doctest::Approx(known.objective).epsilon(1e-7));
             if (fast) CHECK(certificate_at(*known.nlp, outcome.x).certified(1e-7));
@@ -150,7 +150,7 @@ TEST_CASE("a solver's slightly infeasible point is moved to feasibility, and che
     CHECK_FALSE(repaired(guard, vec({1.2, 1.2})));  // too far
 
     // At zero tolerance, where the solvers' own last digits do not suffice.
-    for (const char* method : {"ipopt", "slsqp", "mma", "cobyla", "ccsaq"}) {
+    for (const std::string method : {"ipopt", "slsqp", "mma", "cobyla", "ccsaq"}) {
         for (const auto& problem : {rosenbrock_disc, hs43, hs71, hs100}) {
             CAPTURE(method);
             Known tight = problem();
@@ -159,6 +159,18 @@ TEST_CASE("a solver's slightly infeasible point is moved to feasibility, and che
             CHECK(outcome.constraints.maxCoeff() <= 0);
             CHECK(same_bits(tight.nlp->evaluate(outcome.x, false).constraints, outcome.constraints));
         }
+    }
+}
+
+TEST_CASE("an optimum outside the constraints is not taken for one") {
+    for (const std::string method : {"ipopt", "slsqp", "mma", "ccsaq", "cobyla", "isres"}) {
+        CAPTURE(method);
+        const auto nlp = contradiction();
+        const Outcome outcome = minimise(*nlp, vec({0.3, 1.2}), {.method = method});
+        CHECK((outcome.status == Status::infeasible || outcome.status == Status::failed));
+        CHECK_FALSE(outcome.feasible);
+        CHECK(outcome.infeasibility >= 1 - 1e-12);  // nothing is less infeasible than (1, 1)
+        CHECK(outcome.infeasibility == outcome.constraints.maxCoeff());
     }
 }
 

@@ -129,6 +129,29 @@ TEST_CASE("power balance: kinetic energy changes by drive, loss and the stored e
     CHECK(maxwell_loss.loss > 0.0);
 }
 
+TEST_CASE("fields and currents of both sides") {
+    const auto rhs = test::membranes();
+    const ParameterVector p = test::paper_defaults;
+    // phi and s of the paper, by hand; the current is d(s phi)/dtau along the motion.
+    const auto charge = [&](int side, double theta, const State& y) {
+        const double u = side == 0 ? y[0] : y[0] - 0.8;
+        return (1.0 + u * u) * 0.2 * (side == 0 ? 1.0 - std::cos(theta) : 1.0 + std::cos(theta));
+    };
+    Direction along;
+    along.phase = 1.0;
+    rhs->rate(p, 0.8, somewhere, false, along.state);
+    for (int side = 0; side < 2; ++side) {
+        CAPTURE(side);
+        const double u = side == 0 ? somewhere[0] : somewhere[0] - 0.8;
+        const double field = charge(side, 0.8, somewhere) * 1.1 / std::sqrt(1.0 + u * u);
+        CHECK(rhs->signal(flow::PeakSignal::field, side, p, 0.8, somewhere, {}, nullptr) == doctest::Approx(field));
+        const double rate =
+            difference({rhs, p}, along, 1e-3, [&](const Point& q) { return charge(side, q.theta, q.state); });
+        CHECK(rhs->signal(flow::PeakSignal::current, side, p, 0.8, somewhere, {}, nullptr) ==
+              doctest::Approx(1.9 * rate).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("without the stop the motion is the same reflected and half a cycle later") {
     const auto rhs = test::membranes();
     const ParameterVector p = test::paper_defaults;

@@ -305,6 +305,15 @@ TEST_CASE("the hash tells problems apart and units and spelling do not matter") 
     CHECK(io::problem_hash(read(spring, {option("stop.gap", "0.51 mm")})) != base);
     CHECK(io::problem_hash(read(spring, {option("stop.law", "no-tension")})) != base);
     CHECK(io::problem_hash(read(spring, {option("design.limit", "amplitude <= 1 mm")})) != base);
+    // Bounds count to the last digit, though people see six.
+    const auto limited = [](const char* bound) {
+        return io::problem_hash(read(spring, {option("design.limit", std::string("amplitude <= ") + bound)}));
+    };
+    CHECK(limited("0.001") != limited("0.001000000001"));
+    const auto ranged = [](const char* upper) {
+        return io::problem_hash(read(spring, {option("design.variable", std::string("stop.gap in 0 .. ") + upper)}));
+    };
+    CHECK(ranged("0.001") != ranged("0.001000000001"));
     CHECK(base.size() == 16);
 }
 

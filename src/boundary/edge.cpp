@@ -32,12 +32,6 @@ Passed compare(const FreePoint& a, const FreePoint& b) {
     return passed;
 }
 
-double distance(const FreePoint& a, const FreePoint& b, double scale) {
-    double sum = std::pow((a.omega - b.omega) / scale, 2);
-    for (std::size_t k = 0; k < a.state.size(); ++k) { sum += std::pow(a.state[k] - b.state[k], 2); }
-    return std::sqrt(sum);
-}
-
 FreePoint between(const FreePoint& a, const FreePoint& b, double share) {
     FreePoint p = a;
     p.omega = a.omega + share * (b.omega - a.omega);
@@ -147,10 +141,10 @@ Edge find_edge(FreeBranch& branch, const flow::System& system, const EdgeOptions
         const FreePoint& a = branch.previous();
         const FreePoint& b = branch.current();
         const Passed passed = compare(a, b);
-        const double length = distance(a, b, resonance);
+        const double length = b.arclength - a.arclength;
         const bool too_coarse =
             length > 1e-4 && (passed.events() > 1 || (passed.hump && hump_height(a, b, length) >= 0.0) ||
-                              (passed.events() == 1 && length > 0.1));
+                              (passed.events() == 1 && length > 0.3));
         if (too_coarse && branch.retreat()) { continue; }
         edge.searched_to = b.omega;
         if (passed.events() > 0) {
@@ -172,7 +166,6 @@ Edge find_edge(FreeBranch& branch, const flow::System& system, const EdgeOptions
 FreeOrbitsAt free_orbits_at(FreeBranch& branch, const flow::System& system, double omega, double lowest) {
     FreeOrbitsAt found;
     const orbit::ReturnMap map = FreeBranch::half_cycle();
-    const double resonance = system.integrator->linear_resonance(system.parameters);
     for (int step = 0; step < 200; ++step) {
         const FreePoint& a = branch.previous();
         const FreePoint& b = branch.current();
@@ -195,7 +188,6 @@ FreeOrbitsAt free_orbits_at(FreeBranch& branch, const flow::System& system, doub
             return found;
         }
         if (!branch.advance()) { return found; }
-        if (distance(branch.previous(), branch.current(), resonance) > 1.0) { return found; }
     }
     return found;
 }

@@ -2,6 +2,7 @@
 
 #include "orbit/orbit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -17,21 +18,54 @@ orbit::ReturnMap FreeBranch::half_cycle() {
     return map;
 }
 
+/// What counts as one unit of each state: without this a resonance peak is a ripple in the norm that steps are measured
+/// in, and a step can leap over it.
+static flow::State measure_of(const flow::System& system) {
+    const double centre = system.integrator->centre(system.parameters);
+    const double size = std::max(std::abs(system.stop_position() - centre), 1e-3);
+    flow::State measure;
+    measure.fill(size);
+    measure[1] = size * system.integrator->linear_resonance(system.parameters);
+    return measure;
+}
+
 FreeBranch::FreeBranch(const flow::System& system)
     : system_(system),
       scale_(system.integrator->linear_resonance(system.parameters)),
-      walker_([this](const SmallVector& u, SmallVector& f, SmallMatrix& j) { return evaluate(u, f, j); }, {}) {}
+      measure_(measure_of(system)),
+      walker_([this](const SmallVector& u, SmallVector& f, SmallMatrix& j) { return evaluate(u, f, j); },
+              {.first_step = 0.2, .largest_step = 0.5, .target_angle = 0.2, .largest_angle = 0.5}) {}
+
+SmallVector FreeBranch::to_scaled(const flow::State& y, double omega) const {
+    const int n = system_.states();
+    SmallVector u(n + 1);
+    for (int k = 0; k < n; ++k) { u[k] = y[static_cast<std::size_t>(k)] / measure_[static_cast<std::size_t>(k)]; }
+    u[n] = omega / scale_;
+    return u;
+}
+
+flow::State FreeBranch::to_state(const SmallVector& u) const {
+    flow::State y{};
+    for (int k = 0; k < system_.states(); ++k) {
+        y[static_cast<std::size_t>(k)] = u[k] * measure_[static_cast<std::size_t>(k)];
+    }
+    return y;
+}
 
 bool FreeBranch::evaluate(const SmallVector& u, SmallVector& f, SmallMatrix& jacobian) {
     const int n = system_.states();
     image_omega_ = u[n] * scale_;
     if (!(image_omega_ > 0.0)) { return false; }
     const flow::ParameterVector by_omega = orbit::unit_direction(system_.integrator->info().omega);
-    image_ = orbit::apply(system_.at_omega(image_omega_), half_cycle(), orbit::to_state(u.head(n)),
-                          orbit::Differentiate::all, {&by_omega, 1}, flow::observe_extrema);
+    image_ = orbit::apply(system_.at_omega(image_omega_), half_cycle(), to_state(u), orbit::Differentiate::all,
+                          {&by_omega, 1}, flow::observe_extrema);
     if (!image_.ok()) { return false; }
-    f = orbit::to_vector(system_, image_.state) - u.head(n);
+    f = to_scaled(image_.state, 0.0).head(n) - u.head(n);
     jacobian = image_.derivative;
+    for (int k = 0; k < n; ++k) {
+        jacobian.row(k) /= measure_[static_cast<std::size_t>(k)];
+        jacobian.col(k) *= measure_[static_cast<std::size_t>(k)];
+    }
     jacobian.leftCols(n) -= SmallMatrix::Identity(n, n);
     jacobian.col(n) *= scale_;
     return f.allFinite() && jacobian.allFinite();
@@ -42,12 +76,14 @@ FreePoint FreeBranch::describe() const {
     FreePoint point;
     const SmallVector& u = walker_.point();
     const SmallVector& t = walker_.tangent();
-    point.state = orbit::to_state(u.head(n));
+    point.state = to_state(u);
     point.omega = u[n] * scale_;
     point.omega_slope = t[n];
     const orbit::Observed c = clearance(system_.at_omega(image_omega_), half_cycle(), image_, {});
     point.clearance = c.value;
-    for (int k = 0; k < n; ++k) { point.clearance_slope += c.d[static_cast<std::size_t>(k)] * t[k]; }
+    for (int k = 0; k < n; ++k) { 
+        point.clearance_slope += c.d[static_cast<std::size_t>(k)] * t[k] * measure_[static_cast<std::size_t>(k)];
+    }
     point.clearance_slope += c.d[static_cast<std::size_t>(n)] * scale_ * t[n];
     const auto values = SmallMatrix(image_.derivative.leftCols(n)).eigenvalues().eval();
     std::complex<double> leading = 0.0;
@@ -67,11 +103,7 @@ bool FreeBranch::start(double omega) {
     flow::State guess = system_.integrator->rest_state(system_.parameters);
     const auto settled = orbit::settle(there, guess, 4, flow::StopMode::off);
     if (settled) { guess = *settled; }
-    const int n = system_.states();
-    SmallVector u(n + 1);
-    u.head(n) = orbit::to_vector(system_, guess);
-    u[n] = omega / scale_;
-    if (!walker_.start(u, -1.0)) { return false; }
+    if (!walker_.start(to_scaled(guess, omega), -1.0)) { return false; }
     current_ = describe();
     previous_ = current_;
     return true;
@@ -79,8 +111,10 @@ bool FreeBranch::start(double omega) {
 
 bool FreeBranch::advance() {
     if (!walker_.advance()) { return false; }
+    const SmallVector from = to_scaled(current_.state, current_.omega);
     previous_ = current_;
     current_ = describe();
+    current_.arclength = previous_.arclength + (walker_.point() - from).norm();
     return true;
 }
 

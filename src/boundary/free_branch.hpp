@@ -17,6 +17,7 @@ struct FreePoint {
     double clearance = 0.0;        ///< largest displacement minus gap; negative: the stop is out of reach
     double clearance_slope = 0.0;  ///< along the branch, per unit of arclength
     double omega_slope = 0.0;      ///< of the tangent, scaled frequency
+    double arclength = 0.0;        ///< along the branch from its start, scaled
     /// Of the half-cycle map: modulus of the largest multiplier, and which boundary lies where it crosses 1.
     double radius = 0.0;
     Kind nearest = Kind::none;
@@ -46,7 +47,11 @@ private:
     [[nodiscard]] FreePoint describe() const;
 
     flow::System system_;
-    double scale_;  ///< frequencies are divided by this
+    [[nodiscard]] numerics::SmallVector to_scaled(const flow::State& y, double omega) const;
+    [[nodiscard]] flow::State to_state(const numerics::SmallVector& u) const;
+
+    double scale_;         ///< frequencies are divided by this
+    flow::State measure_;  ///< and states by these: the gap, and the speed of a motion of that size at resonance
     orbit::Image image_;
     double image_omega_ = 0.0;
     numerics::ArclengthWalker walker_;

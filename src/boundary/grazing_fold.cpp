@@ -1,5 +1,6 @@
 #include "boundary/grazing_fold.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -30,6 +31,30 @@ orbit::ContactSequence rescaled(orbit::ContactSequence sequence, double speed) {
     if (old > 0.0) { sequence.contacts[0].duration *= speed / old; }
     sequence.contacts[0].speed = speed;
     return sequence;
+}
+
+/// Goes up in v until the slope changes sign: by linear extrapolation from the last two probes, but at least doubling and
+/// at most thirtyfold. False when there is no fold within reach (or trouble); `fold` then says which.
+bool bracket_fold(const flow::System& system, const Boundary& grazing, GrazingFold& fold, Probe& low, Probe& high) {
+    double factor = 4.0;
+    while (true) {
+        const double speed = low.speed * factor;
+        high = probe(system, rescaled(low.solution.sequence, speed), low.solution.omega, speed);
+        if (!high.ok) {
+            factor = std::sqrt(factor);
+            if (factor < 1.01) { return false; }
+            continue;
+        }
+        if (high.value > 0.0) { return true; }
+        if (grazing.omega - high.solution.omega > fold.reach * grazing.omega) {
+            fold.status = GrazingFold::Status::none;
+            return false;
+        }
+        const double slope = (high.value - low.value) / (high.speed - low.speed);
+        const double crossing = high.speed - high.value / slope;
+        factor = slope > 0.0 ? std::clamp(1.05 * crossing / high.speed, 2.0, 30.0) : 4.0;
+        low = high;
+    }
 }
 
 }  // namespace
@@ -73,34 +98,19 @@ GrazingFold find_fold_beside(const flow::System& system, const Boundary& grazing
         fold.sequence = low.solution.sequence;
         return fold;
     }
-    // March in v until the slope changes sign, each step at most a factor of 4.
     Probe high = low;
-    double factor = 4.0;
-    while (true) {
-        const double speed = low.speed * factor;
-        high = probe(system, rescaled(low.solution.sequence, speed), low.solution.omega, speed);
-        if (!high.ok) {
-            factor = std::sqrt(factor);
-            if (factor < 1.01) { return fold; }
-            continue;
-        }
-        if (high.value > 0.0) { break; }
-        if (grazing.omega - high.solution.omega > reach * grazing.omega) {
-            fold.status = GrazingFold::Status::none;
-            return fold;
-        }
-        low = high;
-    }
-    // Regula falsi (Illinois) on the nearly linear slope.
+    if (!bracket_fold(system, grazing, fold, low, high)) { return fold; }
+    Probe middle = std::abs(high.value) < std::abs(low.value) ? high : low;
+    // Regula falsi (Illinois) on the nearly linear slope. The frequency is stationary in the speed at the fold, so four
+    // digits of the speed give eight of the offset.
     double weight_low = low.value;
     double weight_high = high.value;
-    Probe middle = low;
     for (int iteration = 0; iteration < 40; ++iteration) {
         const double speed = (low.speed * weight_high - high.speed * weight_low) / (weight_high - weight_low);
         const double before = middle.speed;
-        middle = probe(system, rescaled(low.solution.sequence, speed), low.solution.omega, speed);
+        middle = probe(system, rescaled(middle.solution.sequence, speed), middle.solution.omega, speed);
         if (!middle.ok) { return fold; }
-        if (std::abs(middle.speed - before) <= 1e-7 * middle.speed) { break; }
+        if (std::abs(middle.speed - before) <= 1e-4 * middle.speed) { break; }
         if (middle.value < 0.0) {
             low = middle;
             weight_low = middle.value;

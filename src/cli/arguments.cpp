@@ -59,7 +59,7 @@ bool applies(const OptionInfo& option, std::string_view verb) {
 
 /// The verb in its canonical spelling.
 std::string parse_verb(const std::string& word) {
-    const std::string name = word == "optimize" ? "optimise" : word;
+    std::string name = word == "optimize" ? "optimise" : word;
     std::vector<std::string> names;
     for (const VerbInfo& info : verbs()) {
         if (info.name == name && info.available) { return name; }

@@ -28,8 +28,13 @@ study::StopRequest stop_request(const std::optional<double>& time_limit) {
     };
 }
 
-/// A study that was stopped cannot know by what: without a signal it was the time limit.
-Ending told_apart(Ending ending) { return ending == Ending::interrupted && !interrupted() ? Ending::budget : ending; }
+/// A study that was stopped cannot know by what: with a signal it was interrupted, without one its time was over.
+Ending told_apart(Ending ending) {
+    const bool unfinished =
+        ending == Ending::interrupted || ending == Ending::budget || ending == Ending::not_certified;
+    if (unfinished && interrupted()) { return Ending::interrupted; }
+    return ending == Ending::interrupted ? Ending::budget : ending;
+}
 
 std::vector<std::string> files_of_evaluation(bool gradients) {
     std::vector<std::string> files = {"result.json", "report.html", "quantities.csv"};
@@ -88,7 +93,8 @@ int evaluate(const Arguments& arguments) {
 int optimise(const Arguments& arguments) {
     Session session(arguments);
     io::require_one_objective(session.problem());
-    session.start({"result.json", "report.html", "evaluations.csv", "quantities.csv", "layers.csv", "limits.csv"});
+    session.start({"result.json", "report.html", "evaluations.csv", "quantities.csv", "gradients.csv", "layers.csv",
+                   "limits.csv"});
     study::OptimiseStudyResult result;
     {
         const auto rows = session.table("evaluations.csv");
@@ -102,6 +108,7 @@ int optimise(const Arguments& arguments) {
     const std::string document = io::optimise_document(problem, result);
     const auto presentation = io::present_optimum(problem, result);
     session.write("quantities.csv", io::quantities_csv(problem, result.design, result.best));
+    session.write("gradients.csv", io::gradients_csv(problem, result.best));
     session.write("layers.csv", io::layers_csv(problem, result));
     session.write("limits.csv", io::limits_csv(problem, result));
     session.write_results(document, presentation);

@@ -18,6 +18,9 @@ using model::Key;
 using model::Specification;
 using std::numbers::pi;
 
+/// The free branch is followed at this tolerance; everything found on it is refined at the problem's own.
+constexpr double scout_tolerance = 1e-8;
+
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 std::optional<double> given_omega(const Specification& spec, const flow::Integrator& integrator,
@@ -72,12 +75,19 @@ flow::State from_user(const std::vector<double>& given, const model::Scales& sca
     return y;
 }
 
+struct Integrators {
+    const flow::Integrator& own;
+    const flow::Integrator& tighter;
+    const flow::Integrator& scout;
+};
+
 }  // namespace
 
 struct Evaluator::Implementation {
     Problem problem;
     std::unique_ptr<flow::Integrator> integrator;
     std::unique_ptr<flow::Integrator> tighter;  ///< same scene, for error estimates
+    std::unique_ptr<flow::Integrator> scout;    ///< same scene, for finding the way; its errors reach no result
 
     explicit Implementation(Problem p) : problem(std::move(p)) {
         model::validate(problem.actuator);
@@ -94,7 +104,10 @@ struct Evaluator::Implementation {
         }
         integrator = make(problem.solver.tolerance);
         tighter = make(std::max(1e-16, 1e-2 * problem.solver.tolerance));
+        scout = make(std::max(scout_tolerance, problem.solver.tolerance));
     }
+
+    [[nodiscard]] Integrators integrators() const { return {*integrator, *tighter, *scout}; }
 
     [[nodiscard]] std::unique_ptr<flow::Integrator> make(double tolerance) const {
         const Specification& spec = problem.actuator;
@@ -114,14 +127,14 @@ namespace {
 /// One evaluation under way.
 class Run {
 public:
-    Run(const Problem& problem, const flow::Integrator& integrator, const flow::Integrator& tighter,
-        const Specification& actuator, const Demand& demand)
+    Run(const Problem& problem, const Integrators& integrators, const Specification& actuator, const Demand& demand)
         : problem_(problem),
           actuator_(actuator),
           demand_(demand),
           scaled_(model::scale(actuator)) {
-        system_ = {&integrator, scaled_.parameters, &cost_};
-        tighter_ = {&tighter, scaled_.parameters, &cost_};
+        system_ = {&integrators.own, scaled_.parameters, &cost_};
+        tighter_ = {&integrators.tighter, scaled_.parameters, &cost_};
+        scout_ = {&integrators.scout, scaled_.parameters, &cost_};
         result_.gradient_keys = demand.gradients;
         for (Key key : demand.gradients) { keys_.push_back(model::scale_derivative(actuator, key)); }
     }
@@ -215,7 +228,7 @@ private:
             result_.reason = "the motion reached from rest does not touch the stop at this frequency";
         }
         if (problem_.single_stable != SingleStable::off && has_stop && result_.status == EvaluationStatus::ok) {
-            judge(free_orbits_from_above(system_, omega), nullptr);
+            judge(free_orbits_from_above(system_, scout_, omega), nullptr);
         }
     }
 
@@ -225,6 +238,7 @@ private:
         }
         OperationOptions options;
         options.margin = problem_.margin;
+        options.scout = &scout_;
         options.check_neighbours = problem_.single_stable != SingleStable::off;
         std::vector<flow::ParameterVector> directions;
         for (const auto& key : keys_) { directions.push_back(key.parameters); }
@@ -302,6 +316,11 @@ private:
         report.contacts = static_cast<int>(reached.orbit.contacts.size());
         report.residual = measurement.portrait.residual;
         report.state = to_user(state_at_zero(system_, reached.orbit), scales, system_.states());
+        const auto& observed = measurement.portrait.image.observed;
+        if ((observables_for(demand_.quantities) & flow::observe_extrema) != 0U) {
+            report.x_max = scales.length * observed[orbit::x_max].value;
+            report.x_min = scales.length * observed[orbit::x_min].value;
+        }
         orbit::Orbit exact = reached.orbit;
         exact.monodromy = measurement.portrait.monodromy;
         const auto values = orbit::multipliers(exact);
@@ -363,7 +382,7 @@ private:
     const Demand& demand_;
     model::Scaled scaled_;
     flow::Cost cost_;
-    flow::System system_, tighter_;
+    flow::System system_, tighter_, scout_;
     std::vector<KeyDirection> keys_;
     double omega_error_ = 0.0;
     Evaluation result_;
@@ -380,7 +399,7 @@ const Problem& Evaluator::problem() const { return implementation_->problem; }
 
 Evaluation Evaluator::evaluate(const Specification& actuator, const Demand& demand) const {
     model::validate(actuator);
-    return Run(implementation_->problem, *implementation_->integrator, *implementation_->tighter, actuator, demand)
+    return Run(implementation_->problem, implementation_->integrators(), actuator, demand)
         .evaluate();
 }
 
@@ -391,7 +410,7 @@ Evaluation Evaluator::evaluate(const Demand& demand) const {
 Evaluation Evaluator::orbit(const Specification& actuator, const std::optional<std::vector<double>>& start, int period,
                             const Demand& demand) const {
     model::validate(actuator);
-    return Run(implementation_->problem, *implementation_->integrator, *implementation_->tighter, actuator, demand)
+    return Run(implementation_->problem, implementation_->integrators(), actuator, demand)
         .orbit(start, period);
 }
 

@@ -188,7 +188,7 @@ std::optional<Orbit> continue_orbit(const flow::System& system, const Orbit& sta
 
 EdgeOperation operate_at_edge(const flow::System& system, const OperationOptions& options) {
     EdgeOperation operation;
-    boundary::FreeBranch branch(system);
+    boundary::FreeBranch branch(options.scout != nullptr ? *options.scout : system);
     operation.edge = boundary::find_edge(branch, system, {}, options.directions);
     if (operation.edge.status != boundary::EdgeStatus::found) { return operation; }
     const boundary::Boundary& edge = operation.edge.boundary;
@@ -204,8 +204,8 @@ EdgeOperation operate_at_edge(const flow::System& system, const OperationOptions
     return operation;
 }
 
-boundary::FreeOrbitsAt free_orbits_from_above(const flow::System& system, double omega) {
-    boundary::FreeBranch branch(system);
+boundary::FreeOrbitsAt free_orbits_from_above(const flow::System& system, const flow::System& scout, double omega) {
+    boundary::FreeBranch branch(scout);
     const double resonance = system.integrator->linear_resonance(system.parameters);
     for (double ratio = std::max(3.0, 1.5 * omega / resonance); ratio < 100.0; ratio *= 1.7) {
         if (branch.start(ratio * resonance)) { return boundary::free_orbits_at(branch, system, omega, 0.93 * omega); }

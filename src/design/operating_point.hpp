@@ -57,6 +57,7 @@ struct EdgeOperation {
 
 struct OperationOptions {
     double margin = 0.01;
+    const flow::System* scout = nullptr;  ///< same system with a looser integrator, to follow the free branch with
     bool check_neighbours = true;  ///< fold beside the edge, free orbits at the operating frequency
     std::span<const flow::ParameterVector> directions{};
 };
@@ -64,6 +65,7 @@ struct OperationOptions {
 EdgeOperation operate_at_edge(const flow::System& system, const OperationOptions& options);
 
 /// Free orbits that stay clear of the stop at a given frequency (all amplitudes met on the branch from above).
-boundary::FreeOrbitsAt free_orbits_from_above(const flow::System& system, double omega);
+/// `scout` as above.
+boundary::FreeOrbitsAt free_orbits_from_above(const flow::System& system, const flow::System& scout, double omega);
 
 }  // namespace percuss::design

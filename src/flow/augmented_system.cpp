@@ -26,6 +26,7 @@ double size_of(const Direction& direction, const ParameterVector& parameters) {
 AugmentedSystem::AugmentedSystem(const RightHandSide& rhs, const ParameterVector& parameters, const Request& request)
     : rhs_(rhs),
       parameters_(parameters),
+      start_(request.theta),
       states_(rhs.states()),
       lanes_(static_cast<int>(request.directions.size())) {
     int next = states_;
@@ -94,23 +95,23 @@ std::span<const Direction> AugmentedSystem::directions(const Columns& states) co
     return {directions_.data(), at(lanes_)};
 }
 
-void AugmentedSystem::state_rate(double theta, const double* values, bool touching, double* out) const {
+void AugmentedSystem::state_rate(double t, const double* values, bool touching, double* out) const {
     ++evaluations_;
     State rate{};
-    rhs_.rate(parameters_, theta, lift(values), touching, rate);
+    rhs_.rate(parameters_, phase(t), lift(values), touching, rate);
     std::copy_n(rate.begin(), states_, out);
 }
 
-void AugmentedSystem::state_rates(double theta, const Columns& states, bool touching, const MutableColumns& out) const {
+void AugmentedSystem::state_rates(double t, const Columns& states, bool touching, const MutableColumns& out) const {
     ++evaluations_;
     State rate{};
     std::array<State, at(max_lanes)> rate_d{};
-    rhs_.rates(parameters_, theta, lift(states[0]), touching, directions(states), rate, rate_d.data());
+    rhs_.rates(parameters_, phase(t), lift(states[0]), touching, directions(states), rate, rate_d.data());
     std::copy_n(rate.begin(), states_, out[0]);
     for (int lane = 0; lane < lanes_; ++lane) { std::copy_n(rate_d[at(lane)].begin(), states_, out[at(1 + lane)]); }
 }
 
-void AugmentedSystem::integral_rate(double theta, const double* values, bool touching, double* out) const {
+void AugmentedSystem::integral_rate(double t, const double* values, bool touching, double* out) const {
     const double per_phase = 1.0 / omega();
     if (places_.impulse >= 0) {
         const double force = touching ? stiffness() * values[0] + damping() * values[1] : 0.0;
@@ -119,14 +120,13 @@ void AugmentedSystem::integral_rate(double theta, const double* values, bool tou
     }
     if (places_.drive_work >= 0) {
         Powers power;
-        rhs_.powers(parameters_, theta, lift(values), {}, power, nullptr);
+        rhs_.powers(parameters_, phase(t), lift(values), {}, power, nullptr);
         out[places_.drive_work - states_] = power.drive * per_phase;
         out[places_.dissipation - states_] = power.loss * per_phase;
     }
 }
 
-void AugmentedSystem::integral_rates(double theta, const Columns& states, bool touching,
-                                     const MutableColumns& out) const {
+void AugmentedSystem::integral_rates(double t, const Columns& states, bool touching, const MutableColumns& out) const {
     const double per_phase = 1.0 / omega();
     const double* y = states[0];
     if (places_.impulse >= 0) {
@@ -151,7 +151,7 @@ void AugmentedSystem::integral_rates(double theta, const Columns& states, bool t
         const int loss = places_.dissipation - states_;
         Powers power;
         std::array<Powers, at(max_lanes)> power_d{};
-        rhs_.powers(parameters_, theta, lift(y), directions(states), power, power_d.data());
+        rhs_.powers(parameters_, phase(t), lift(y), directions(states), power, power_d.data());
         out[0][drive] = power.drive * per_phase;
         out[0][loss] = power.loss * per_phase;
         for (int lane = 0; lane < lanes_; ++lane) {
@@ -163,7 +163,7 @@ void AugmentedSystem::integral_rates(double theta, const Columns& states, bool t
     }
 }
 
-void AugmentedSystem::rates(double theta, const double* y, bool touching, double* out) const {
+void AugmentedSystem::rates(double t, const double* y, bool touching, double* out) const {
     Columns states{};
     MutableColumns state_out{};
     MutableColumns integral_out{};
@@ -173,21 +173,21 @@ void AugmentedSystem::rates(double theta, const double* y, bool touching, double
         integral_out[at(c)] = out + c * block() + states_;
     }
     if (lanes_ == 0) {
-        state_rate(theta, y, touching, out);
-        integral_rate(theta, y, touching, out + states_);
+        state_rate(t, y, touching, out);
+        integral_rate(t, y, touching, out + states_);
         return;
     }
-    state_rates(theta, states, touching, state_out);
-    if (places_.count > 0) { integral_rates(theta, states, touching, integral_out); }
+    state_rates(t, states, touching, state_out);
+    if (places_.count > 0) { integral_rates(t, states, touching, integral_out); }
 }
 
-void AugmentedSystem::jacobian(double theta, const double* values, bool touching, double* out) const {
+void AugmentedSystem::jacobian(double t, const double* values, bool touching, double* out) const {
     ++evaluations_;
     std::array<Direction, at(max_states)> unit{};
     for (int i = 0; i < states_; ++i) { unit[at(i)].state[at(i)] = 1.0; }
     State rate{};
     std::array<State, at(max_states)> rate_d{};
-    rhs_.rates(parameters_, theta, lift(values), touching, {unit.data(), at(states_)}, rate, rate_d.data());
+    rhs_.rates(parameters_, phase(t), lift(values), touching, {unit.data(), at(states_)}, rate, rate_d.data());
     for (int column = 0; column < states_; ++column) {
         std::copy_n(rate_d[at(column)].begin(), states_, out + column * states_);
     }

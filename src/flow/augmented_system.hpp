@@ -4,7 +4,8 @@
 /// direction (variational equations) and the integrals that the observables ask for, with their derivatives.
 ///
 /// The displacement is kept as the overlap x - x_stop, so that the surface of the stop is the number zero and the
-/// shallowest contact keeps its relative accuracy. Independent variable: theta = omega tau.
+/// shallowest contact keeps its relative accuracy. The independent variable is the
+/// phase since the start, t = theta - Request.theta: the shortest run keeps its relative accuracy too.
 
 #include "flow/flow.hpp"
 #include "flow/right_hand_side.hpp"
@@ -19,8 +20,8 @@ inline constexpr int max_integrals = 4;
 inline constexpr int max_block = max_states + max_integrals;
 inline constexpr int max_columns = 1 + max_lanes;
 
-/// All numbers of a run at one phase, column after column: first the values, then the derivatives along each direction
-/// at fixed phase. A column holds the state (overlap first) and below it the integrals.
+/// All numbers of a run at one time t, column after column: first the values, then the derivatives along each direction
+/// at fixed t. A column holds the state (overlap first) and below it the integrals.
 using Extended = std::array<double, static_cast<std::size_t>(max_block* max_columns)>;
 
 /// Pointers to the part of each column that is meant, values first.
@@ -47,6 +48,8 @@ public:
     [[nodiscard]] int lanes() const { return lanes_; }
     [[nodiscard]] int columns() const { return 1 + lanes_; }
     [[nodiscard]] const IntegralPlaces& integrals() const { return places_; }
+    /// Drive phase theta at t.
+    [[nodiscard]] double phase(double t) const { return start_ + t; }
     /// Numbers in a column, and in all columns.
     [[nodiscard]] int block() const { return states_ + places_.count; }
     [[nodiscard]] int size() const { return block() * columns(); }
@@ -80,15 +83,15 @@ public:
     /// Directions at a point: parameters and phase of the request, states from the columns.
     [[nodiscard]] std::span<const Direction> directions(const Columns& states) const;
 
-    // Right-hand sides: d/d(theta) of what `out` names. Evaluations are counted.
-    void state_rate(double theta, const double* values, bool touching, double* out) const;
-    void state_rates(double theta, const Columns& states, bool touching, const MutableColumns& out) const;
-    void integral_rate(double theta, const double* values, bool touching, double* out) const;
-    void integral_rates(double theta, const Columns& states, bool touching, const MutableColumns& out) const;
+    // Right-hand sides: d/dt of what `out` names. Evaluations are counted.
+    void state_rate(double t, const double* values, bool touching, double* out) const;
+    void state_rates(double t, const Columns& states, bool touching, const MutableColumns& out) const;
+    void integral_rate(double t, const double* values, bool touching, double* out) const;
+    void integral_rates(double t, const Columns& states, bool touching, const MutableColumns& out) const;
     /// Everything at once, laid out as Extended.
-    void rates(double theta, const double* y, bool touching, double* out) const;
+    void rates(double t, const double* y, bool touching, double* out) const;
     /// d(state_rate)/d(values), column-major, states x states.
-    void jacobian(double theta, const double* values, bool touching, double* out) const;
+    void jacobian(double t, const double* values, bool touching, double* out) const;
 
     [[nodiscard]] long evaluations() const { return evaluations_; }
 
@@ -102,6 +105,7 @@ private:
 
     const RightHandSide& rhs_;
     ParameterVector parameters_;
+    double start_;
     /// The state part is overwritten at each evaluation.
     mutable std::array<Direction, static_cast<std::size_t>(max_lanes)> directions_{};
     IntegralPlaces places_;

@@ -59,9 +59,9 @@ bool may_matter(const Wanted& wanted, bool maximum, double value, double left, d
 
 }  // namespace
 
-MotionPoint motion_point(const AugmentedSystem& system, double theta, const State& values, bool touching) {
-    MotionPoint point{theta, values, touching, {}};
-    system.state_rate(theta, values.data(), touching, point.along.state.data());
+MotionPoint motion_point(const AugmentedSystem& system, double t, const State& values, bool touching) {
+    MotionPoint point{t, values, touching, {}};
+    system.state_rate(t, values.data(), touching, point.along.state.data());
     point.along.phase = 1.0;
     return point;
 }
@@ -78,20 +78,21 @@ SignalSample sample(const AugmentedSystem& system, Signal signal, const MotionPo
             return {system.stop_force(point.values), system.stiffness() * rate[0] + system.damping() * rate[1]};
         case SignalKind::acceleration: {
             State second{};
-            system.rhs().rate_derivative(system.parameters(), point.theta, system.state(point.values), point.touching,
-                                         point.along, second);
+            system.rhs().rate_derivative(system.parameters(), system.phase(point.t), system.state(point.values),
+                                         point.touching, point.along, second);
             return {system.omega() * rate[1], system.omega() * second[1]};
         }
         case SignalKind::field:
         case SignalKind::current: break;
     }
     SignalSample result;
-    result.value = system.rhs().signal(peak_signal(signal.kind), signal.side, system.parameters(), point.theta,
-                                       system.state(point.values), {&point.along, 1}, &result.slope);
+    result.value =
+        system.rhs().signal(peak_signal(signal.kind), signal.side, system.parameters(), system.phase(point.t),
+                            system.state(point.values), {&point.along, 1}, &result.slope);
     return result;
 }
 
-Sensitive sensitive(const AugmentedSystem& system, Signal signal, double theta, const Extended& y, bool touching) {
+Sensitive sensitive(const AugmentedSystem& system, Signal signal, double t, const Extended& y, bool touching) {
     Sensitive result;
     const State values = system.values(y);
     switch (signal.kind) {
@@ -110,7 +111,7 @@ Sensitive sensitive(const AugmentedSystem& system, Signal signal, double theta, 
         case SignalKind::acceleration: {
             State rate{};
             std::array<State, at(max_lanes)> rate_d{};
-            system.rhs().rates(system.parameters(), theta, system.state(values), touching,
+            system.rhs().rates(system.parameters(), system.phase(t), system.state(values), touching,
                                system.directions(state_columns(system, y)), rate, rate_d.data());
             result.value = system.omega() * rate[1];
             for (int lane = 0; lane < system.lanes(); ++lane) {
@@ -122,8 +123,8 @@ Sensitive sensitive(const AugmentedSystem& system, Signal signal, double theta, 
         case SignalKind::current: break;
     }
     result.value =
-        system.rhs().signal(peak_signal(signal.kind), signal.side, system.parameters(), theta, system.state(values),
-                            system.directions(state_columns(system, y)), result.d.data());
+        system.rhs().signal(peak_signal(signal.kind), signal.side, system.parameters(), system.phase(t),
+                            system.state(values), system.directions(state_columns(system, y)), result.d.data());
     return result;
 }
 
@@ -132,24 +133,24 @@ TurningPoints turning_points(const AugmentedSystem& system, Signal signal, const
     TurningPoints found;
     const double h = piece.right - piece.left;
     const Cubic cubic(h, left, right);
-    const auto end_at = [&](double theta, const State& values) -> RootEnd {
-        const MotionPoint point = motion_point(system, theta, values, piece.touching);
-        RootEnd end{theta, {sample(system, signal, point).slope}};
+    const auto end_at = [&](double t, const State& values) -> RootEnd {
+        const MotionPoint point = motion_point(system, t, values, piece.touching);
+        RootEnd end{t, {sample(system, signal, point).slope}};
         if (signal.kind == SignalKind::overlap) { end.sample.slope = point.along.state[1] / system.omega(); }
         return end;
     };
-    const auto slope_at = [&](double theta) -> RootSample {
+    const auto slope_at = [&](double t) -> RootSample {
         State values{};
-        piece.stepper.values(theta, values);
-        return end_at(theta, values).sample;
+        piece.stepper.values(t, values);
+        return end_at(t, values).sample;
     };
     const auto visit = [&](const RootEnd& a, const RootEnd& b) {
-        // Per unit of theta the slope falls through zero at a maximum; run backwards in theta it rises.
+        // Per unit of t the slope falls through zero at a maximum; run backwards in t it rises.
         const bool maximum = (h > 0.0) == (a.sample.value > 0.0);
         const double value = cubic.value_at_turn((a.at - piece.left) / h, (b.at - piece.left) / h);
         if (may_matter(wanted, maximum, value, left.value, right.value)) {
-            const double theta = b.sample.value == 0.0 ? b.at : bracketed_root(a, b, slope_at);
-            found.points[at(found.count++)] = {theta, maximum};
+            const double t = b.sample.value == 0.0 ? b.at : bracketed_root(a, b, slope_at);
+            found.points[at(found.count++)] = {t, maximum};
         }
     };
 
@@ -162,8 +163,8 @@ TurningPoints turning_points(const AugmentedSystem& system, Signal signal, const
     }
     const double s = cubic.inflection();
     if (s > 0.0 && s < 1.0 && opposite_signs(cubic.slope(s) / h, left.slope)) {
-        const double theta = piece.left + s * h;
-        const RootEnd middle{theta, slope_at(theta)};
+        const double t = piece.left + s * h;
+        const RootEnd middle{t, slope_at(t)};
         if (opposite_signs(middle.sample.value, left.slope)) {
             visit(end_at(piece.left, piece.left_values), middle);
             visit(middle, end_at(piece.right, piece.right_values));

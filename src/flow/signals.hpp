@@ -20,15 +20,15 @@ struct Signal {
     int side = 0;  ///< for field and current
 };
 
-/// A signal at one point: value and slope with respect to theta.
+/// A signal at one point: value and slope with respect to t.
 struct SignalSample {
     double value = 0.0;
     double slope = 0.0;
 };
 
-/// A point of the motion and the direction in which it goes, per unit of theta.
+/// A point of the motion and the direction in which it goes, per unit of t.
 struct MotionPoint {
-    double theta = 0.0;
+    double t = 0.0;
     State values{};
     bool touching = false;
     Direction along;
@@ -46,7 +46,7 @@ struct Piece {
 
 /// Where a signal turns.
 struct TurningPoint {
-    double theta = 0.0;
+    double t = 0.0;
     bool maximum = false;
 };
 
@@ -66,15 +66,15 @@ struct Wanted {
     double level = -std::numeric_limits<double>::infinity();
 };
 
-MotionPoint motion_point(const AugmentedSystem& system, double theta, const State& values, bool touching);
+MotionPoint motion_point(const AugmentedSystem& system, double t, const State& values, bool touching);
 
 SignalSample sample(const AugmentedSystem& system, Signal signal, const MotionPoint& point);
 
 /// The overlap with the stop needs no right-hand side.
 SignalSample overlap_sample(const AugmentedSystem& system, const State& values);
 
-/// Value of a signal and its derivatives along the directions at fixed theta.
-Sensitive sensitive(const AugmentedSystem& system, Signal signal, double theta, const Extended& y, bool touching);
+/// Value of a signal and its derivatives along the directions at fixed t.
+Sensitive sensitive(const AugmentedSystem& system, Signal signal, double t, const Extended& y, bool touching);
 
 /// Turning points of a signal inside a piece (its left end excluded, its right end included), located to the accuracy
 /// of the stepper. A pair that the cubic through both ends does not show is missed; steps are short enough to make such

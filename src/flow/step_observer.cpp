@@ -20,7 +20,7 @@ Sensitive modulus(const Sensitive& a) { return a.value < 0.0 ? negative(a) : a; 
 
 constexpr bool has_modulus(SignalKind kind) { return kind == SignalKind::acceleration || kind == SignalKind::current; }
 
-/// Total derivative of a value at an event: its own at fixed phase, and what the motion of the event adds.
+/// Total derivative of a value at an event: its own at fixed t, and what the motion of the event adds.
 Sensitive moving(Sensitive a, double slope, const Lanes& shift) {
     for (std::size_t j = 0; j < shift.size(); ++j) {
         if (shift[j] != 0.0) { a.d[j] += slope * shift[j]; }
@@ -47,10 +47,10 @@ void jump(const AugmentedSystem& system, Extended& y, double sign) {
 void cross_entry(const AugmentedSystem& system, Extended& y) { jump(system, y, +1.0); }
 void cross_exit(const AugmentedSystem& system, Extended& y) { jump(system, y, -1.0); }
 
-void Peak::raise(const Sensitive& candidate, double at_theta) {
+void Peak::raise(const Sensitive& candidate, double at_t) {
     if (!found || candidate.value > best.value) {
         best = candidate;
-        theta = at_theta;
+        t = at_t;
         found = true;
     }
 }
@@ -77,14 +77,14 @@ Peak& StepObserver::peak_of(SignalKind kind) {
     }
 }
 
-void StepObserver::begin(double theta, const Extended& y, bool touching) {
-    offer_ends(theta, y, touching);
-    if (touching) { open_contact(theta, y, true); }
+void StepObserver::begin(double t, const Extended& y, bool touching) {
+    offer_ends(t, y, touching);
+    if (touching) { open_contact(t, y, true); }
 }
 
-void StepObserver::end(double theta, const Extended& y, bool touching) {
-    offer_ends(theta, y, touching);
-    if (touching) { close_contact({theta, {}}, y, true); }
+void StepObserver::end(double t, const Extended& y, bool touching) {
+    offer_ends(t, y, touching);
+    if (touching) { close_contact({t, {}}, y, true); }
     const auto shifted = [&](const Sensitive& overlap, double sign) {
         Sensitive x = overlap;
         x.value = sign * x.value + system_.origin();
@@ -96,11 +96,14 @@ void StepObserver::end(double theta, const Extended& y, bool touching) {
     if (watches_extrema()) {
         out_.x_max = shifted(x_max_.best, 1.0);
         out_.x_min = shifted(x_min_negative_.best, -1.0);
-        out_.theta_x_max = x_max_.theta;
-        out_.theta_x_min = x_min_negative_.theta;
+        out_.theta_x_max = system_.phase(x_max_.t);
+        out_.theta_x_min = system_.phase(x_min_negative_.t);
     }
-    out_.peak_force = force_.best;
-    out_.theta_peak_force = force_.theta;
+    const bool always_touching = result_.contacts.size() == 1 && result_.contacts[0].open_in && touching;
+    if (always_touching || force_.best.value > 0.0) {  // in flight the force is zero
+        out_.peak_force = force_.best;
+    }
+    out_.theta_peak_force = force_.found ? system_.phase(force_.t) : 0.0;
     out_.impact_velocity = impact_.best;
     out_.peak_acceleration = acceleration_.best;
     out_.peak_field = field_.best;
@@ -123,16 +126,16 @@ void StepObserver::end(double theta, const Extended& y, bool touching) {
     out_.dissipation = integral(places.dissipation);
 }
 
-void StepObserver::offer_ends(double theta, const Extended& y, bool touching) {
+void StepObserver::offer_ends(double t, const Extended& y, bool touching) {
     if (watches_extrema()) {
-        const Sensitive overlap = sensitive(system_, {SignalKind::overlap, 0}, theta, y, touching);
-        x_max_.raise(overlap, theta);
-        x_min_negative_.raise(negative(overlap), theta);
+        const Sensitive overlap = sensitive(system_, {SignalKind::overlap, 0}, t, y, touching);
+        x_max_.raise(overlap, t);
+        x_min_negative_.raise(negative(overlap), t);
     }
     for (int i = 0; i < watched_; ++i) {
         const Signal signal = signals_[at(i)];
-        const Sensitive value = sensitive(system_, signal, theta, y, touching);
-        peak_of(signal.kind).raise(has_modulus(signal.kind) ? modulus(value) : value, theta);
+        const Sensitive value = sensitive(system_, signal, t, y, touching);
+        peak_of(signal.kind).raise(has_modulus(signal.kind) ? modulus(value) : value, t);
     }
 }
 
@@ -140,12 +143,12 @@ void StepObserver::piece(const Piece& piece, const TurningPoints& turns) {
     if (watches_extrema()) {
         for (const TurningPoint& turn : turns) {
             Extended y;
-            piece.stepper.everything(turn.theta, y);
-            const Sensitive overlap = sensitive(system_, {SignalKind::overlap, 0}, turn.theta, y, piece.touching);
+            piece.stepper.everything(turn.t, y);
+            const Sensitive overlap = sensitive(system_, {SignalKind::overlap, 0}, turn.t, y, piece.touching);
             if (turn.maximum) {
-                x_max_.raise(overlap, turn.theta);
+                x_max_.raise(overlap, turn.t);
             } else {
-                x_min_negative_.raise(negative(overlap), turn.theta);
+                x_min_negative_.raise(negative(overlap), turn.t);
             }
         }
     }
@@ -167,9 +170,9 @@ void StepObserver::watch(Signal signal, Peak& peak, std::optional<SignalSample>&
     const Wanted wanted{by_modulus ? Wanted::Kind::largest_modulus : Wanted::Kind::maxima, peak.level()};
     for (const TurningPoint& turn : turning_points(system_, signal, piece, *left, right, wanted)) {
         Extended y;
-        piece.stepper.everything(turn.theta, y);
-        const Sensitive value = sensitive(system_, signal, turn.theta, y, piece.touching);
-        peak.raise(by_modulus ? modulus(value) : value, turn.theta);
+        piece.stepper.everything(turn.t, y);
+        const Sensitive value = sensitive(system_, signal, turn.t, y, piece.touching);
+        peak.raise(by_modulus ? modulus(value) : value, turn.t);
     }
     left = right;
 }
@@ -178,70 +181,69 @@ void StepObserver::corner(const Crossing& crossing, const Extended& y, bool touc
     left_ = {};
     force_left_.reset();
     if (watched_ == 0) { return; }
-    const MotionPoint point = motion_point(system_, crossing.theta, system_.values(y), touching);
+    const MotionPoint point = motion_point(system_, crossing.t, system_.values(y), touching);
     for (int i = 0; i < watched_; ++i) {
         const Signal signal = signals_[at(i)];
         if (signal.kind == SignalKind::field) {
-            continue;  // depends on x and theta alone: smooth across events
+            continue;  // depends on x and t alone: smooth across events
         }
         const SignalSample here = sample(system_, signal, point);
-        const Sensitive value =
-            moving(sensitive(system_, signal, crossing.theta, y, touching), here.slope, crossing.shift);
-        peak_of(signal.kind).raise(modulus(value), crossing.theta);
+        const Sensitive value = moving(sensitive(system_, signal, crossing.t, y, touching), here.slope, crossing.shift);
+        peak_of(signal.kind).raise(modulus(value), crossing.t);
     }
 }
 
 void StepObserver::enter(const Crossing& crossing, const Extended& y, bool with_impact) {
-    open_contact(crossing.theta, y, false);
+    open_contact(crossing.t, y, false);
     opened_ = crossing;
     if (!with_impact || !observes(observe_force)) { return; }
-    const MotionPoint before = motion_point(system_, crossing.theta, system_.values(y), false);
+    const MotionPoint before = motion_point(system_, crossing.t, system_.values(y), false);
     Sensitive speed;
     speed.value = system_.entry(y, 0, 1);
     for (int lane = 0; lane < system_.lanes(); ++lane) { speed.d[at(lane)] = system_.entry(y, 1 + lane, 1); }
     speed = moving(speed, before.along.state[1], crossing.shift);
-    impact_.raise(speed, crossing.theta);
+    impact_.raise(speed, crossing.t);
     Sensitive force;
     force.value = system_.damping() * speed.value;
     for (int lane = 0; lane < system_.lanes(); ++lane) {
         force.d[at(lane)] = system_.damping() * speed.d[at(lane)] + system_.damping_d(lane) * speed.value;
     }
-    contact_force_.raise(force, crossing.theta);
+    contact_force_.raise(force, crossing.t);
 }
 
 void StepObserver::leave(const Crossing& crossing, const Extended& y) { close_contact(crossing, y, false); }
 
-void StepObserver::open_contact(double theta, const Extended& y, bool open) {
+void StepObserver::open_contact(double t, const Extended& y, bool open) {
     Contact contact;
-    contact.theta_in = theta;
+    contact.theta_in = system_.phase(t);
     contact.state_in = system_.state(system_.values(y));
     contact.open_in = open;
     result_.contacts.push_back(contact);
-    opened_ = {theta, {}};
+    opened_ = {t, {}};
     contact_force_ = {};
     if (open && observes(observe_force)) {
-        contact_force_.raise(sensitive(system_, {SignalKind::stop_force, 0}, theta, y, true), theta);
+        contact_force_.raise(sensitive(system_, {SignalKind::stop_force, 0}, t, y, true), t);
     }
 }
 
 void StepObserver::close_contact(const Crossing& crossing, const Extended& y, bool open) {
     Contact& contact = result_.contacts.back();
-    contact.theta_out = crossing.theta;
+    contact.theta_out = system_.phase(crossing.t);
     contact.state_out = system_.state(system_.values(y));
     contact.open_out = open;
     if (!observes(observe_force)) { return; }
     if (open) {
-        contact_force_.raise(sensitive(system_, {SignalKind::stop_force, 0}, crossing.theta, y, true), crossing.theta);
+        contact_force_.raise(sensitive(system_, {SignalKind::stop_force, 0}, crossing.t, y, true), crossing.t);
     }
     contact.peak_force = contact_force_.best.value;
     if (contact_force_.found) {
         if (force_.found) {
             out_.runner_up_force = std::max(out_.runner_up_force, std::min(force_.best.value, contact.peak_force));
         }
-        force_.raise(contact_force_.best, contact_force_.theta);
+        force_.raise(contact_force_.best, contact_force_.t);
     }
     const double omega = system_.omega();
-    const double lasted = (crossing.theta - opened_.theta) / omega;
+    const double lasted = (crossing.t - opened_.t) / omega;
     out_.contact_time.value += lasted;
     for (int lane = 0; lane < system_.lanes(); ++lane) {
         out_.contact_time.d[at(lane)] +=

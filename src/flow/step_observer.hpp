@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Observables of a run that advances by steps, with gradients. A smooth maximum needs no derivative of the phase at
-/// which it is reached (envelope theorem); a value that sits at an event moves with it, d(theta_e) = -(dx -
-/// dx_stop)/(dx/dtheta) on the surface. Integrals are integrated along with the motion; their jumps at events are
-/// applied by cross_entry() and cross_exit() and divide by nothing.
+/// Observables of a run that advances by steps, with gradients. A smooth maximum needs no derivative of the time at
+/// which it is reached (envelope theorem); a value that sits at an event moves with it, on the surface by
+/// dt_e = -(dx - dx_stop)/(dx/dt). Integrals are integrated along with the motion; their jumps at events are applied by
+/// cross_entry() and cross_exit() and divide by nothing.
 
 #include "flow/augmented_system.hpp"
 #include "flow/flow.hpp"
@@ -18,7 +18,7 @@ namespace percuss::flow {
 /// The largest value offered so far.
 struct Peak {
     Sensitive best;
-    double theta = 0.0;
+    double t = 0.0;
     bool found = false;
     /// Keeps the larger of what it has and the candidate.
     void raise(const Sensitive& candidate, double at);
@@ -27,8 +27,8 @@ struct Peak {
 
 /// An event as the observables see it.
 struct Crossing {
-    double theta = 0.0;
-    Lanes shift{};  ///< derivative of theta along the directions
+    double t = 0.0;
+    Lanes shift{};  ///< derivative of t along the directions
 };
 
 class StepObserver {
@@ -40,8 +40,8 @@ public:
     [[nodiscard]] bool watches_extrema() const { return (mask_ & observe_extrema) != 0U; }
 
     /// Start and end of the run. A contact under way is opened or closed there.
-    void begin(double theta, const Extended& y, bool touching);
-    void end(double theta, const Extended& y, bool touching);
+    void begin(double t, const Extended& y, bool touching);
+    void end(double t, const Extended& y, bool touching);
 
     /// A smooth stretch; `turns` are the turning points of x in it (empty when they are not needed).
     void piece(const Piece& piece, const TurningPoints& turns);
@@ -61,8 +61,8 @@ private:
     [[nodiscard]] Peak& peak_of(SignalKind kind);
     void watch(Signal signal, Peak& peak, std::optional<SignalSample>& left, const Piece& piece,
                const MotionPoint& right);
-    void offer_ends(double theta, const Extended& y, bool touching);
-    void open_contact(double theta, const Extended& y, bool open);
+    void offer_ends(double t, const Extended& y, bool touching);
+    void open_contact(double t, const Extended& y, bool open);
     void close_contact(const Crossing& crossing, const Extended& y, bool open);
 
     const AugmentedSystem& system_;

@@ -16,7 +16,7 @@ public:
     virtual ~Stepper() = default;
 
     /// Starts, or starts again after an event. Up to `limit`, which is never passed, the motion is smooth.
-    virtual bool start(double theta, const Extended& y, bool touching, double limit) = 0;
+    virtual bool start(double t, const Extended& y, bool touching, double limit) = 0;
     /// Takes one step; false when the method cannot go on.
     virtual bool advance() = 0;
 
@@ -26,9 +26,9 @@ public:
     [[nodiscard]] const State& left_values() const { return left_values_; }
     [[nodiscard]] const State& right_values() const { return right_values_; }
 
-    /// States, or everything, at a phase between left and right.
-    virtual void values(double theta, State& out) = 0;
-    virtual void everything(double theta, Extended& out) = 0;
+    /// States, or everything, at a point between left and right.
+    virtual void values(double t, State& out) = 0;
+    virtual void everything(double t, Extended& out) = 0;
 
 protected:
     double left_ = 0.0;

@@ -4,11 +4,17 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace percuss::flow {
 namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Relative to the duration: what is left behind an event is then rounding.
+constexpr double shortest_restart = 8.0 * std::numeric_limits<double>::epsilon();
+/// Durations shorter than this change nothing that double precision could tell, and are beyond what SUNDIALS can do.
+constexpr double shortest_duration = 1e-60;
 
 bool all_finite(const AugmentedSystem& system, const Extended& y) {
     for (int i = 0; i < system.size(); ++i) {
@@ -42,7 +48,7 @@ void StepwiseRun::run() {
             cross(*event);
         } else if (stepper_.right() == limit()) {
             stepper_.everything(stepper_.right(), y_);
-            theta_ = stepper_.right();
+            t_ = stepper_.right();
             result_.status = Status::ok;
         }
     }
@@ -50,7 +56,6 @@ void StepwiseRun::run() {
 }
 
 void StepwiseRun::begin() {
-    theta_ = request_.theta;
     y_ = system_.initial(request_.state);
     phase_ = first_phase();
     if (request_.starts_in_contact && hybrid()) { system_.entry(y_, 0, 0) = 0.0; }
@@ -58,8 +63,8 @@ void StepwiseRun::begin() {
         result_.status = Status::diverged;
         return;
     }
-    observer_.begin(theta_, y_, touching());
-    if (request_.duration == 0.0) {
+    observer_.begin(t_, y_, touching());
+    if (std::abs(request_.duration) < shortest_duration) {
         result_.status = Status::ok;
         return;
     }
@@ -77,7 +82,7 @@ StepwiseRun::Phase StepwiseRun::first_phase() const {
 }
 
 void StepwiseRun::restart() {
-    if (!stepper_.start(theta_, y_, touching(), limit())) { result_.status = Status::diverged; }
+    if (!stepper_.start(t_, y_, touching(), limit())) { result_.status = Status::diverged; }
 }
 
 bool StepwiseRun::advance() {
@@ -97,9 +102,9 @@ Piece StepwiseRun::step_as_piece() {
     return {stepper_, stepper_.left(), stepper_.right(), stepper_.left_values(), stepper_.right_values(), touching()};
 }
 
-SignalSample StepwiseRun::sample_at(SignalKind kind, double theta, const State& values) const {
+SignalSample StepwiseRun::sample_at(SignalKind kind, double t, const State& values) const {
     return kind == SignalKind::overlap ? overlap_sample(system_, values)
-                                       : sample(system_, {kind, 0}, motion_point(system_, theta, values, touching()));
+                                       : sample(system_, {kind, 0}, motion_point(system_, t, values, touching()));
 }
 
 TurningPoints StepwiseRun::turns_of(SignalKind kind, const Piece& piece) const {
@@ -108,8 +113,8 @@ TurningPoints StepwiseRun::turns_of(SignalKind kind, const Piece& piece) const {
 }
 
 std::optional<StepwiseRun::Event> StepwiseRun::first_event(const Piece& step, const TurningPoints& turns) {
-    const auto event = [](EventKind kind, const std::optional<double>& theta) -> std::optional<Event> {
-        return theta ? std::optional<Event>{{kind, *theta}} : std::nullopt;
+    const auto event = [](EventKind kind, const std::optional<double>& t) -> std::optional<Event> {
+        return t ? std::optional<Event>{{kind, *t}} : std::nullopt;
     };
     const bool pulls = system_.rhs().contact_law() == ContactLaw::kelvin_voigt;
     if (phase_ == Phase::free) {
@@ -124,33 +129,36 @@ std::optional<StepwiseRun::Event> StepwiseRun::first_event(const Piece& step, co
     }
     const auto departure = event(EventKind::departure, first_crossing(SignalKind::overlap, false, step, turns));
     const auto reload = event(EventKind::reload, first_crossing(SignalKind::stop_force, true, step, force_turns));
-    const bool departs_first = departure && (!reload || departure->theta <= reload->theta);
+    const bool departs_first = departure && (!reload || departure->t <= reload->t);
     return departs_first ? departure : reload;
 }
 
 std::optional<double> StepwiseRun::first_crossing(SignalKind kind, bool upward, const Piece& step,
                                                   const TurningPoints& turns) {
-    const auto end_at = [&](double theta, const State& values) -> RootEnd {
-        const SignalSample s = sample_at(kind, theta, values);
-        return {theta, {s.value, s.slope}};
+    const auto end_at = [&](double t, const State& values) -> RootEnd {
+        const SignalSample s = sample_at(kind, t, values);
+        return {t, {s.value, s.slope}};
     };
-    const auto evaluate = [&](double theta) {
+    const auto evaluate = [&](double t) {
         State values{};
-        stepper_.values(theta, values);
-        return end_at(theta, values);
+        stepper_.values(t, values);
+        return end_at(t, values);
     };
     const auto crossing_between = [&](const RootEnd& a, const RootEnd& b) -> std::optional<double> {
-        const bool beyond = upward ? b.sample.value > 0.0 : b.sample.value < 0.0;
-        if (!beyond) { return std::nullopt; }
+        const double side = upward ? 1.0 : -1.0;
+        const double trend = std::abs(a.sample.slope) > std::abs(b.sample.slope) ? a.sample.slope : b.sample.slope;
+        const double way = side * trend * (step.right - step.left);
+        // Rounding and the method's own error may set the function beyond zero while it is moving back.
+        if (!(side * b.sample.value > 0.0) || !(way > 0.0)) { return std::nullopt; }
         if (!opposite_signs(a.sample.value, b.sample.value)) {
             return a.at;  // on the surface, or over it by rounding, and moving on
         }
-        return bracketed_root(a, b, [&](double theta) { return evaluate(theta).sample; });
+        return bracketed_root(a, b, [&](double t) { return evaluate(t).sample; });
     };
     RootEnd a = end_at(step.left, step.left_values);
     for (const TurningPoint& turn : turns) {
-        const RootEnd b = evaluate(turn.theta);
-        if (const auto theta = crossing_between(a, b)) { return theta; }
+        const RootEnd b = evaluate(turn.t);
+        if (const auto t = crossing_between(a, b)) { return t; }
         a = b;
     }
     return crossing_between(a, end_at(step.right, step.right_values));
@@ -159,19 +167,19 @@ std::optional<double> StepwiseRun::first_crossing(SignalKind kind, bool upward, 
 void StepwiseRun::observe(Piece piece, TurningPoints turns, const std::optional<Event>& event) {
     if (!observer_.watches_steps() && !(touching() && (request_.observe & observe_force) != 0U)) { return; }
     if (event) {
-        while (turns.count > 0 && turns.points[at(turns.count - 1)].theta > event->theta) { --turns.count; }
-        piece.right = event->theta;
+        while (turns.count > 0 && turns.points[at(turns.count - 1)].t > event->t) { --turns.count; }
+        piece.right = event->t;
         stepper_.values(piece.right, piece.right_values);
     }
     observer_.piece(piece, turns);
 }
 
 Crossing StepwiseRun::crossing(const Event& event) const {
-    Crossing result{event.theta, {}};
+    Crossing result{event.t, {}};
     const bool by_force = event.kind == EventKind::release || event.kind == EventKind::reload;
     const SignalKind kind = by_force ? SignalKind::stop_force : SignalKind::overlap;
-    const double slope = sample_at(kind, event.theta, system_.values(y_)).slope;
-    const Sensitive value = sensitive(system_, {kind, 0}, event.theta, y_, touching());
+    const double slope = sample_at(kind, event.t, system_.values(y_)).slope;
+    const Sensitive value = sensitive(system_, {kind, 0}, event.t, y_, touching());
     for (int lane = 0; lane < system_.lanes(); ++lane) {
         const double d = value.d[at(lane)];
         result.shift[at(lane)] = d == 0.0 ? 0.0 : -d / slope;
@@ -184,8 +192,8 @@ void StepwiseRun::cross(const Event& event) {
         result_.status = Status::too_many_events;
         return;
     }
-    theta_ = event.theta;
-    stepper_.everything(theta_, y_);
+    t_ = event.t;
+    stepper_.everything(t_, y_);
     const bool on_surface = event.kind != EventKind::release && event.kind != EventKind::reload;
     if (on_surface) { system_.entry(y_, 0, 0) = 0.0; }
     const Crossing place = crossing(event);
@@ -216,7 +224,7 @@ void StepwiseRun::cross(const Event& event) {
         case EventKind::departure: phase_ = Phase::free; break;
     }
     observer_.corner(place, y_, touching());
-    if (theta_ == limit()) {
+    if (std::abs(limit() - t_) <= shortest_restart * std::abs(limit())) {
         result_.status = Status::ok;
     } else {
         restart();
@@ -228,14 +236,14 @@ void StepwiseRun::finish() {
     result_.state = system_.state(values);
     result_.rhs_evaluations = system_.evaluations();
     if (result_.status != Status::ok) { return; }
-    observer_.end(theta_, y_, touching());
+    observer_.end(t_, y_, touching());
     for (int lane = 0; lane < system_.lanes(); ++lane) {
         for (int i = 0; i < system_.states(); ++i) {
             result_.state_d[at(i)][at(lane)] = system_.entry(y_, 1 + lane, i);
         }
         result_.state_d[0][at(lane)] += system_.origin_d(lane);
     }
-    system_.state_rate(theta_, values.data(), touching(), result_.rate.data());
+    system_.state_rate(t_, values.data(), touching(), result_.rate.data());
     if (request_.stop == StopMode::held) { divide(); }
     result_.rhs_evaluations = system_.evaluations();
 }
@@ -244,15 +252,16 @@ void StepwiseRun::divide() {
     const State values = system_.values(y_);
     const double duration = request_.duration;
     const double omega = system_.omega();
-    const Sensitive force = sensitive(system_, {SignalKind::stop_force, 0}, theta_, y_, true);
+    const bool no_time = std::abs(duration) < shortest_duration;
+    const Sensitive force = sensitive(system_, {SignalKind::stop_force, 0}, t_, y_, true);
     const double unit = system_.stiffness() * std::abs(duration) + system_.damping();
     Sensitive& gap = result_.divided_gap;
     Sensitive& share = result_.divided_force;
-    gap.value = duration == 0.0 ? values[1] / omega : values[0] / duration;
+    gap.value = no_time ? values[1] / omega : values[0] / duration;
     share.value = unit > 0.0 ? force.value / unit : 0.0;
     for (int lane = 0; lane < system_.lanes(); ++lane) {
-        gap.d[at(lane)] = duration == 0.0 ? (system_.entry(y_, 1 + lane, 1) - gap.value * system_.omega_d(lane)) / omega
-                                          : system_.entry(y_, 1 + lane, 0) / duration;
+        gap.d[at(lane)] = no_time ? (system_.entry(y_, 1 + lane, 1) - gap.value * system_.omega_d(lane)) / omega
+                                  : system_.entry(y_, 1 + lane, 0) / duration;
         const double unit_d = system_.stiffness_d(lane) * std::abs(duration) + system_.damping_d(lane);
         share.d[at(lane)] = unit > 0.0 ? (force.d[at(lane)] - share.value * unit_d) / unit : 0.0;
     }

@@ -33,13 +33,13 @@ private:
     enum class EventKind : std::uint8_t { entry, exit, release, reload, departure };
     struct Event {
         EventKind kind = EventKind::entry;
-        double theta = 0.0;
+        double t = 0.0;
     };
 
     [[nodiscard]] bool touching() const { return phase_ == Phase::contact; }
     [[nodiscard]] bool ongoing() const { return result_.status == Status::not_run; }
     [[nodiscard]] bool hybrid() const;
-    [[nodiscard]] double limit() const { return request_.theta + request_.duration; }
+    [[nodiscard]] double limit() const { return request_.duration; }
 
     void begin();
     [[nodiscard]] Phase first_phase() const;
@@ -50,7 +50,7 @@ private:
     [[nodiscard]] std::optional<double> first_crossing(SignalKind kind, bool upward, const Piece& step,
                                                        const TurningPoints& turns);
     /// Of the overlap or of the force on the stop.
-    [[nodiscard]] SignalSample sample_at(SignalKind kind, double theta, const State& values) const;
+    [[nodiscard]] SignalSample sample_at(SignalKind kind, double t, const State& values) const;
     [[nodiscard]] TurningPoints turns_of(SignalKind kind, const Piece& piece) const;
     void observe(Piece piece, TurningPoints turns, const std::optional<Event>& event);
     void cross(const Event& event);
@@ -65,7 +65,7 @@ private:
     Result& result_;
     StepObserver observer_;
     Phase phase_ = Phase::free;
-    double theta_ = 0.0;  ///< phase and numbers at the last start, and at the end
+    double t_ = 0.0;  ///< phase since the start, and the numbers there: at the last restart, and at the end
     Extended y_{};
     int events_ = 0;
 };

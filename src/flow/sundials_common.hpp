@@ -30,7 +30,7 @@ inline constexpr double tightest_tolerance = 1e-15;
 
 class SundialsIntegrator : public Integrator {
 public:
-    /// Throws std::invalid_argument unless 1e-16 < tolerance < 1e-2 and rhs is not null.
+    /// Throws std::invalid_argument unless 1e-16 <= tolerance <= 1e-2 and rhs is not null.
     SundialsIntegrator(std::shared_ptr<const RightHandSide> rhs, double tolerance);
 
     [[nodiscard]] const SystemInfo& info() const override { return rhs_->info(); }

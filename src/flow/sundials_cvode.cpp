@@ -85,14 +85,14 @@ public:
         if (!matrix_ || !solver_) { throw std::bad_alloc(); }
     }
 
-    bool start(double theta, const Extended& y, bool touching, double limit) override {
+    bool start(double t, const Extended& y, bool touching, double limit) override {
         touching_ = touching;
         limit_ = limit;
-        right_ = theta;
+        right_ = t;
         right_values_ = system_.values(y);
         state_.load(system_, y, 0);
         integral_.load(system_, y, system_.states());
-        return (memory_ ? restart(theta) : create(theta)) && ok(CVodeSetStopTime(memory_.get(), limit));
+        return (memory_ ? restart(t) : create(t)) && ok(CVodeSetStopTime(memory_.get(), limit));
     }
 
     bool advance() override {
@@ -105,25 +105,25 @@ public:
         return true;
     }
 
-    void values(double theta, State& out) override {
-        if (theta == right_) {
+    void values(double t, State& out) override {
+        if (t == right_) {
             out = right_values_;
             return;
         }
-        CVodeGetDky(memory_.get(), theta, 0, state_.values());
+        CVodeGetDky(memory_.get(), t, 0, state_.values());
         out = {};
         std::copy_n(state_.numbers(0).begin(), system_.states(), out.begin());
     }
 
-    void everything(double theta, Extended& out) override {
+    void everything(double t, Extended& out) override {
         void* memory = memory_.get();
         out = {};
-        CVodeGetDky(memory, theta, 0, state_.values());
-        if (has_lanes()) { CVodeGetSensDky(memory, theta, 0, state_.lanes()); }
+        CVodeGetDky(memory, t, 0, state_.values());
+        if (has_lanes()) { CVodeGetSensDky(memory, t, 0, state_.lanes()); }
         state_.store(system_, out, 0);
         if (has_integrals()) {
-            CVodeGetQuadDky(memory, theta, 0, integral_.values());
-            if (has_lanes()) { CVodeGetQuadSensDky(memory, theta, 0, integral_.lanes()); }
+            CVodeGetQuadDky(memory, t, 0, integral_.values());
+            if (has_lanes()) { CVodeGetQuadSensDky(memory, t, 0, integral_.lanes()); }
             integral_.store(system_, out, system_.states());
         }
     }
@@ -134,12 +134,12 @@ private:
     [[nodiscard]] bool has_lanes() const { return system_.lanes() > 0; }
     [[nodiscard]] bool has_integrals() const { return system_.integrals().count > 0; }
 
-    bool create(double theta) {
+    bool create(double t) {
         memory_.reset(CVodeCreate(CV_BDF, context()));
         void* memory = memory_.get();
         if (memory == nullptr) { throw std::bad_alloc(); }
         bool fine = ok(CVodeSetErrHandlerFn(memory, ignore_sundials_message, nullptr)) &&
-                    ok(CVodeInit(memory, &CvodeStepper::rate, theta, state_.values())) &&
+                    ok(CVodeInit(memory, &CvodeStepper::rate, t, state_.values())) &&
                     ok(CVodeSetUserData(memory, this)) && ok(CVodeSetMaxErrTestFails(memory, max_failures)) &&
                     ok(CVodeSetMaxConvFails(memory, max_failures)) &&
                     ok(CVodeSVtolerances(memory, tolerance_, absolute_.values())) &&
@@ -164,9 +164,9 @@ private:
         return fine;
     }
 
-    bool restart(double theta) {
+    bool restart(double t) {
         void* memory = memory_.get();
-        return ok(CVodeReInit(memory, theta, state_.values())) &&
+        return ok(CVodeReInit(memory, t, state_.values())) &&
                (!has_lanes() || ok(CVodeSensReInit(memory, CV_STAGGERED, state_.lanes()))) &&
                (!has_integrals() || ok(CVodeQuadReInit(memory, integral_.values()))) &&
                (!has_integrals() || !has_lanes() || ok(CVodeQuadSensReInit(memory, integral_.lanes())));
@@ -191,37 +191,36 @@ private:
         return result;
     }
 
-    static int rate(realtype theta, N_Vector y, N_Vector out, void* self) {
+    static int rate(realtype t, N_Vector y, N_Vector out, void* self) {
         const auto& stepper = *static_cast<const CvodeStepper*>(self);
         double* rate = N_VGetArrayPointer(out);
-        stepper.system_.state_rate(theta, N_VGetArrayPointer(y), stepper.touching_, rate);
+        stepper.system_.state_rate(t, N_VGetArrayPointer(y), stepper.touching_, rate);
         return verdict(rate, stepper.system_.states());
     }
-    static int jacobian(realtype theta, N_Vector y, N_Vector, SUNMatrix out, void* self, N_Vector, N_Vector, N_Vector) {
+    static int jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix out, void* self, N_Vector, N_Vector, N_Vector) {
         const auto& stepper = *static_cast<const CvodeStepper*>(self);
         const int size = stepper.system_.states();
         double* entries = SUNDenseMatrix_Data(out);
-        stepper.system_.jacobian(theta, N_VGetArrayPointer(y), stepper.touching_, entries);
+        stepper.system_.jacobian(t, N_VGetArrayPointer(y), stepper.touching_, entries);
         return verdict(entries, size * size);
     }
-    static int lane_rate(int, realtype theta, N_Vector y, N_Vector, N_Vector* lanes, N_Vector* out, void* self,
-                         N_Vector, N_Vector) {
+    static int lane_rate(int, realtype t, N_Vector y, N_Vector, N_Vector* lanes, N_Vector* out, void* self, N_Vector,
+                         N_Vector) {
         const auto& stepper = *static_cast<const CvodeStepper*>(self);
         std::array<double, at(max_block)> unused{};
-        stepper.system_.state_rates(theta, stepper.columns(y, lanes), stepper.touching_,
-                                    stepper.lane_columns(out, unused));
+        stepper.system_.state_rates(t, stepper.columns(y, lanes), stepper.touching_, stepper.lane_columns(out, unused));
         return verdict(unused.data(), stepper.system_.states());
     }
-    static int integral_rate(realtype theta, N_Vector y, N_Vector out, void* self) {
+    static int integral_rate(realtype t, N_Vector y, N_Vector out, void* self) {
         const auto& stepper = *static_cast<const CvodeStepper*>(self);
-        stepper.system_.integral_rate(theta, N_VGetArrayPointer(y), stepper.touching_, N_VGetArrayPointer(out));
+        stepper.system_.integral_rate(t, N_VGetArrayPointer(y), stepper.touching_, N_VGetArrayPointer(out));
         return 0;
     }
-    static int integral_lane_rate(int, realtype theta, N_Vector y, N_Vector* lanes, N_Vector, N_Vector* out, void* self,
+    static int integral_lane_rate(int, realtype t, N_Vector y, N_Vector* lanes, N_Vector, N_Vector* out, void* self,
                                   N_Vector, N_Vector) {
         const auto& stepper = *static_cast<const CvodeStepper*>(self);
         std::array<double, at(max_block)> unused{};
-        stepper.system_.integral_rates(theta, stepper.columns(y, lanes), stepper.touching_,
+        stepper.system_.integral_rates(t, stepper.columns(y, lanes), stepper.touching_,
                                        stepper.lane_columns(out, unused));
         return 0;
     }

@@ -45,17 +45,17 @@ public:
         }
     }
 
-    bool start(double theta, const Extended& y, bool touching, double limit) override {
+    bool start(double t, const Extended& y, bool touching, double limit) override {
         touching_ = touching;
         limit_ = limit;
-        right_ = theta;
+        right_ = t;
         right_all_ = y;
         right_values_ = system_.values(y);
         void* memory = memory_.get();
-        if (memory == nullptr) { return create(theta); }
-        const double first = std::min(std::abs(step_), std::abs(limit - theta));
-        return ERKStepReInit(memory, &ErkStepper::rate, theta, vector()) == ARK_SUCCESS &&
-               ERKStepSetInitStep(memory, std::copysign(first, limit - theta)) == ARK_SUCCESS &&
+        if (memory == nullptr) { return create(t); }
+        const double first = std::min(std::abs(step_), std::abs(limit - t));
+        return ERKStepReInit(memory, &ErkStepper::rate, t, vector()) == ARK_SUCCESS &&
+               ERKStepSetInitStep(memory, std::copysign(first, limit - t)) == ARK_SUCCESS &&
                ERKStepSetStopTime(memory, limit) == ARK_SUCCESS;
     }
 
@@ -71,31 +71,32 @@ public:
         return true;
     }
 
-    void values(double theta, State& out) override {
-        if (theta == right_) {
+    void values(double t, State& out) override {
+        if (t == right_) {
             out = right_values_;
             return;
         }
         out = {};
-        repeat(theta, system_.states(), out.data(),
-               [this](double t, const double* y, double* rate) { system_.state_rate(t, y, touching_, rate); });
+        repeat(t, system_.states(), out.data(), [this](double t_stage, const double* y, double* rate) {
+            system_.state_rate(t_stage, y, touching_, rate);
+        });
     }
 
-    void everything(double theta, Extended& out) override {
-        if (theta == right_) {
+    void everything(double t, Extended& out) override {
+        if (t == right_) {
             out = right_all_;
             return;
         }
         out = {};
-        repeat(theta, system_.size(), out.data(),
-               [this](double t, const double* y, double* rate) { system_.rates(t, y, touching_, rate); });
+        repeat(t, system_.size(), out.data(),
+               [this](double t_stage, const double* y, double* rate) { system_.rates(t_stage, y, touching_, rate); });
     }
 
 private:
     [[nodiscard]] N_Vector vector() const { return static_cast<N_Vector>(vector_.get()); }
 
-    bool create(double theta) {
-        memory_.reset(ERKStepCreate(&ErkStepper::rate, theta, vector(), static_cast<SUNContext>(context_.get())));
+    bool create(double t) {
+        memory_.reset(ERKStepCreate(&ErkStepper::rate, t, vector(), static_cast<SUNContext>(context_.get())));
         void* memory = memory_.get();
         if (memory == nullptr) { throw std::bad_alloc(); }
         return ERKStepSetErrHandlerFn(memory, ignore_sundials_message, nullptr) == ARK_SUCCESS &&
@@ -105,10 +106,10 @@ private:
                ERKStepSetStopTime(memory, limit_) == ARK_SUCCESS;
     }
 
-    /// Runge-Kutta step of the first `size` numbers from the left end of the last step to theta.
+    /// Runge-Kutta step of the first `size` numbers from the left end of the last step to t.
     template <class Rate>
-    void repeat(double theta, int size, double* out, Rate&& rate) {
-        const double h = theta - left_;
+    void repeat(double t, int size, double* out, Rate&& rate) {
+        const double h = t - left_;
         const auto& table = *table_;
         for (int stage = 0; stage < table.stages; ++stage) {
             Extended& y = scratch_;
@@ -126,10 +127,10 @@ private:
         }
     }
 
-    static int rate(realtype theta, N_Vector y, N_Vector out, void* self) {
+    static int rate(realtype t, N_Vector y, N_Vector out, void* self) {
         const auto& stepper = *static_cast<const ErkStepper*>(self);
         double* rate = N_VGetArrayPointer(out);
-        stepper.system_.rates(theta, N_VGetArrayPointer(y), stepper.touching_, rate);
+        stepper.system_.rates(t, N_VGetArrayPointer(y), stepper.touching_, rate);
         constexpr int try_shorter = 1;
         const bool finite = std::all_of(rate, rate + stepper.system_.size(), [](double r) { return std::isfinite(r); });
         return finite ? 0 : try_shorter;

@@ -106,7 +106,8 @@ private:
     /// Jorba and Zou (2005), section 3.2, with one scale for the whole state.
     void choose_step() {
         const Base size = jet_.norm(0);
-        const double scale = static_cast<double>(size);
+        // States are of order one by scaling; smaller ones are held to the same absolute tolerance.
+        const double scale = std::max(1.0, static_cast<double>(size));
         double h = 1e300;
         for (int j : {order_ - 1, order_}) {
             const double c = static_cast<double>(jet_.norm(j));

@@ -214,6 +214,7 @@ std::string optimise_document(const ProblemFile& problem, const study::OptimiseS
     }
     out["design"] = design_of(result.design);
     out["quantities"] = per_quantity(result.best.quantities, family);
+    out["gradients"] = gradients_of(result.best, family, true);
     out["operating_point"] = operating_point_of(result.best.operating_point);
     out["limits"] = Json::array();
     for (const study::LimitReport& limit : result.limits) { out["limits"].push_back(limit_of(limit)); }

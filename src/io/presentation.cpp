@@ -144,10 +144,12 @@ std::vector<Block> gradient_blocks(const Evaluation& evaluation, model::Family f
 }
 
 Block uniqueness_block(const design::Uniqueness& uniqueness) {
-    std::string words = "uniqueness: " + std::string(design::to_string(uniqueness.verdict)) + ", tier " +
-                        std::to_string(uniqueness.tier);
-    if (uniqueness.starts > 0) { words += ", " + std::to_string(uniqueness.starts) + " starts"; }
-    if (!uniqueness.checked.empty()) { words += ". " + uniqueness.checked; }
+    const std::string tier = "tier " + std::to_string(uniqueness.tier);
+    std::string words = "uniqueness: " + std::string(design::to_string(uniqueness.verdict)) + ", ";
+    words += uniqueness.checked.starts_with(tier) ? uniqueness.checked
+           : uniqueness.checked.empty()           ? tier
+                                                  : tier + ": " + uniqueness.checked;
+    if (uniqueness.starts > 0) { words += "; " + std::to_string(uniqueness.starts) + " starts"; }
     return sentence(words);
 }
 

@@ -58,7 +58,7 @@ std::vector<SettingInfo> make_table() {
     table.push_back({"design.minimise", "", "a quantity", "none", "what to make small", true});
     table.push_back(
         {"design.limit", "", "QUANTITY <= VALUE or QUANTITY >= VALUE", "none", "what a design must respect", true});
-    table.push_back({"design.single_stable", "", "off | orbit | sampled | refuted", "orbit",
+    table.push_back({"design.single_stable", "", "off | orbit", "orbit",
                      "how it is checked that the motion is the only stable one"});
 
     table.push_back({"optimiser.method", "", alternatives(optimise::methods()), optimiser.method, "optimiser"});

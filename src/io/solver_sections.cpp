@@ -42,7 +42,7 @@ double parse_between(const Setting& setting, double above, double below) {
 }
 
 std::string parse_choice(const Setting& setting, std::span<const std::string> choices) {
-    const std::string text(trimmed(setting.value));
+    std::string text(trimmed(setting.value));
     if (std::find(choices.begin(), choices.end(), text) == choices.end()) {
         throw bad_value(setting, "the nearest one known is " + nearest_name(text, choices) + ", all are " +
                                      alternatives(choices));

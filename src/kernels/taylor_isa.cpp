@@ -32,7 +32,7 @@ flow::Sensitive sensitive(const T& a) {
 
 template <class T>
 void seed([[maybe_unused]] T& target, [[maybe_unused]] std::size_t i, [[maybe_unused]] double value) {
-    if constexpr (numerics::ScalarTraits<T>::lanes > 0) { target.d[i] = value; }
+    if constexpr (numerics::ScalarTraits<T>::lanes > 0) { target.d.set(i, value); }
 }
 
 template <class Jet>

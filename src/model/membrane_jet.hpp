@@ -209,19 +209,19 @@ private:
         sin1_ = sin(theta);
         cos2_ = 2.0 * cos1_[0] * cos1_[0] - 1.0;
         sin2_ = 2.0 * sin1_ * cos1_[0];
-        u_[0] = Pair<T>(x_[0], x_[0] - length_);
-        s_[0] = Pair<T>(1.0 + x_[0] * x_[0], 1.0 + u_[0].second() * u_[0].second());
+        u_.set(0, Pair<T>(x_[0], x_[0] - length_));
+        s_.set(0, Pair<T>(1.0 + x_[0] * x_[0], 1.0 + u_[0].second() * u_[0].second()));
         const T s1 = s_[0].first();
         const T s2 = s_[0].second();
         inverse_s_ = Pair<T>(1.0 / s1, 1.0 / s2);
         const T p1 = exp(half_alpha_a_ * log(s1));
         const T p2 = exp(half_alpha_a_ * log(s2));
-        p_[0] = Pair<T>(p1, p2);
-        q_[0] = Pair<T>(1.0 / p1, 1.0 / p2);
-        root_[0] = Pair<T>(1.0 / sqrt(s1), 1.0 / sqrt(s2));
+        p_.set(0, Pair<T>(p1, p2));
+        q_.set(0, Pair<T>(1.0 / p1, 1.0 / p2));
+        root_.set(0, Pair<T>(1.0 / sqrt(s1), 1.0 / sqrt(s2)));
         if constexpr (Viscous) {
-            l_[0] = Pair<T>(stretch_[0], stretch_[1]);
-            m_[0] = Pair<T>(1.0 / stretch_[0], 1.0 / stretch_[1]);
+            l_.set(0, Pair<T>(stretch_[0], stretch_[1]));
+            m_.set(0, Pair<T>(1.0 / stretch_[0], 1.0 / stretch_[1]));
         }
     }
 
@@ -250,7 +250,7 @@ private:
     void extend(int n, bool touching) {
         const Base reciprocal = Base(1) / static_cast<Base>(n + 1);
         x_[n + 1] = v_[n] * inverse_omega_ * reciprocal;
-        u_[n + 1] = Pair<T>(x_[n + 1]);
+        u_.set(n + 1, Pair<T>(x_[n + 1]));
 
         // All convolutions over already known coefficients, in one sweep.
         const Pair<T> zero(T(0.0));
@@ -269,29 +269,29 @@ private:
                 mz.add_product(m_[j], z_[n - j]);
             }
         }
-        s_[n + 1] = square + u_[n + 1] * u_[0];
-        w_[n] = inverse_s_ * (static_cast<Base>(n + 1) * s_[n + 1] - sw);
+        s_.set(n + 1, square + u_[n + 1] * u_[0]);
+        w_.set(n, inverse_s_ * (static_cast<Base>(n + 1) * s_[n + 1] - sw));
         pw.add_product(p_[0], w_[n]);
         qw.add_product(q_[0], w_[n]);
         rw.add_product(root_[0], w_[n]);
-        p_[n + 1] = (half_alpha_a_ * reciprocal) * pw;
-        q_[n + 1] = (-half_alpha_a_ * reciprocal) * qw;
-        ds_[n] = Base(-0.5) * rw;
-        root_[n + 1] = reciprocal * ds_[n];
+        p_.set(n + 1, (half_alpha_a_ * reciprocal) * pw);
+        q_.set(n + 1, (-half_alpha_a_ * reciprocal) * qw);
+        ds_.set(n, Base(-0.5) * rw);
+        root_.set(n + 1, reciprocal * ds_[n]);
 
         Pair<T> stress = k1_ * p_[n] - k2_ * q_[n];
         if constexpr (Viscous) {
-            r_[n] = relaxation_ * (l_[n] - Base(0.5) * m_[n] - (n == 0 ? Pair<T>(T(0.5)) : zero));
-            z_[n] = alpha_b_ * (Base(0.5) * w_[n] - r_[n]);
+            r_.set(n, relaxation_ * (l_[n] - Base(0.5) * m_[n] - (n == 0 ? Pair<T>(T(0.5)) : zero)));
+            z_.set(n, alpha_b_ * (Base(0.5) * w_[n] - r_[n]));
             lz.add_product(l_[0], z_[n]);
             mz.add_product(m_[0], z_[n]);
-            l_[n + 1] = reciprocal * lz;
-            m_[n + 1] = (-reciprocal) * mz;
+            l_.set(n + 1, reciprocal * lz);
+            m_.set(n + 1, (-reciprocal) * mz);
             stress = stress + k3_ * (l_[n] - m_[n]);
         }
-        e_[n] = inverse_s_ * (stress - se);
-        phi2_[n] = drive(n);
-        b_[n] = e_[n] - damping_rate_ * ds_[n] - phi2_[n];
+        e_.set(n, inverse_s_ * (stress - se));
+        phi2_.set(n, drive(n));
+        b_.set(n, e_[n] - damping_rate_ * ds_[n] - phi2_[n]);
         ub.add_product(u_[0], b_[n]);
 
         T acceleration = -layers_ * (ub.first() + ub.second());
@@ -310,9 +310,8 @@ private:
     Base inverse_factorial_ = 1;
     Base power_of_two_ = 1;
     Series x_, v_, cos1_;
-    using PairSeries = std::array<Pair<T>, MaxOrder + 1>;
     Pair<T> inverse_s_;
-    PairSeries u_, s_, w_, p_, q_, root_, ds_, l_, m_, r_, z_, e_, b_, phi2_;
+    numerics::PairSeries<T, MaxOrder + 1> u_, s_, w_, p_, q_, root_, ds_, l_, m_, r_, z_, e_, b_, phi2_;
 };
 
 }  // namespace PERCUSS_ISA

@@ -56,11 +56,10 @@ public:
         if (ut_are_convertible(from.get(), to.get()) == 0) { return {Outcome::wrong_dimension, 0.0}; }
         const Converter converter(ut_get_converter(from.get(), to.get()));
         if (!converter) { return {Outcome::wrong_dimension, 0.0}; }
-        const double zero = cv_convert_double(converter.get(), 0.0);
         const double one = cv_convert_double(converter.get(), 1.0);
         const double thousand = cv_convert_double(converter.get(), 1000.0);
         const bool proportional =
-            zero == 0.0 && std::isfinite(one) && one > 0.0 && std::abs(thousand - 1000.0 * one) <= 1e-9 * thousand;
+            std::isfinite(one) && one > 0.0 && std::abs(thousand - 1000.0 * one) <= 1e-9 * thousand;
         return {proportional ? Outcome::ok : Outcome::not_proportional, one};
     }
 
@@ -125,12 +124,6 @@ bool is_product_of_powers(std::string_view unit) {
     }
 }
 
-bool is_origin_word(std::string_view unit) {
-    constexpr std::array words = {"since", "after", "from", "ref"};
-    return std::any_of(words.begin(), words.end(),
-                       [&](std::string_view word) { return unit.find(word) != std::string_view::npos; });
-}
-
 std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 
 std::string expectation(std::string_view unit) {
@@ -146,9 +139,7 @@ std::string expectation(std::string_view unit) {
 double convert(std::string_view text, double value, std::string_view suffix, std::string_view unit) {
     if (suffix == unit && unit != "1") { return value; }
     if (unit == "rad/s") { refuse(text, "is not an angular frequency in rad/s", unit); }
-    if (!is_product_of_powers(suffix) || is_origin_word(suffix)) {
-        refuse(text, "is not one number with one unit", unit);
-    }
+    if (!is_product_of_powers(suffix)) { refuse(text, "is not one number with one unit", unit); }
     const Factor factor = Database::instance().factor(std::string(suffix), std::string(unit));
     switch (factor.outcome) {
         case Outcome::ok: break;

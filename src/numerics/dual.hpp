@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstddef>
 
 #ifndef PERCUSS_ISA
 #define PERCUSS_ISA generic
@@ -16,12 +18,56 @@ inline namespace PERCUSS_ISA {
 
 #define PERCUSS_INLINE inline __attribute__((always_inline))
 
-template <int N>
-struct LaneVector {
-    using type [[gnu::vector_size(N * sizeof(double))]] = double;
+/// Lanes in one machine register of this instruction set. Wider vectors than the machine has are lowered badly by the
+/// compiler, so more lanes are several registers.
+#if defined(__AVX512F__)
+inline constexpr int register_lanes = 8;
+#elif defined(__AVX__)
+inline constexpr int register_lanes = 4;
+#else
+inline constexpr int register_lanes = 2;
+#endif
+
+template <int W>
+struct Register {
+    typedef double type __attribute__((vector_size(W * sizeof(double))));  // NOLINT(modernize-use-using)
 };
+
+/// N doubles worked on together.
 template <int N>
-using Vector = typename LaneVector<N>::type;
+struct Vector {
+    static constexpr int width = N < register_lanes ? N : register_lanes;
+    static constexpr int parts = N / width;
+    using Part = typename Register<width>::type;
+    Part part[parts];
+
+    PERCUSS_INLINE double operator[](std::size_t i) const { return part[i / width][i % width]; }
+    PERCUSS_INLINE void set(std::size_t i, double value) { part[i / width][i % width] = value; }
+
+    PERCUSS_INLINE Vector& operator+=(const Vector& o) {
+        for (int i = 0; i < parts; ++i) { part[i] += o.part[i]; }
+        return *this;
+    }
+    PERCUSS_INLINE Vector& operator-=(const Vector& o) {
+        for (int i = 0; i < parts; ++i) { part[i] -= o.part[i]; }
+        return *this;
+    }
+    /// this += o s
+    PERCUSS_INLINE void add_scaled(const Vector& o, double s) {
+        for (int i = 0; i < parts; ++i) { part[i] += o.part[i] * s; }
+    }
+    friend PERCUSS_INLINE Vector operator+(Vector a, const Vector& b) { return a += b; }
+    friend PERCUSS_INLINE Vector operator-(Vector a, const Vector& b) { return a -= b; }
+    friend PERCUSS_INLINE Vector operator-(Vector a) {
+        for (int i = 0; i < parts; ++i) { a.part[i] = -a.part[i]; }
+        return a;
+    }
+    friend PERCUSS_INLINE Vector operator*(Vector a, double s) {
+        for (int i = 0; i < parts; ++i) { a.part[i] *= s; }
+        return a;
+    }
+    friend PERCUSS_INLINE Vector operator*(double s, const Vector& a) { return a * s; }
+};
 
 /// value + N directional derivatives. Arithmetic is the chain rule.
 template <int N>
@@ -88,6 +134,8 @@ PERCUSS_INLINE const double& base(const Dual<N>& a) {
     return a.v;
 }
 
+using TwoLanes = typename Register<2>::type;
+
 /// Two scalars worked on together: the two membranes of an actuator.
 template <class T>
 struct Pair {
@@ -109,9 +157,9 @@ struct Pair {
 
 template <>
 struct Pair<double> {
-    Vector<2> v;
+    TwoLanes v;
     Pair() = default;
-    PERCUSS_INLINE explicit Pair(Vector<2> value) : v(value) {}
+    PERCUSS_INLINE explicit Pair(TwoLanes value) : v(value) {}
     PERCUSS_INLINE Pair(double first, double second) : v{first, second} {}
     PERCUSS_INLINE explicit Pair(double both) : v{both, both} {}
     [[nodiscard]] PERCUSS_INLINE double first() const { return v[0]; }
@@ -125,10 +173,10 @@ struct Pair<double> {
 
 template <int N>
 struct Pair<Dual<N>> {
-    Vector<2> v;
+    TwoLanes v;
     Vector<N> d0, d1;
     Pair() = default;
-    PERCUSS_INLINE Pair(Vector<2> value, Vector<N> first, Vector<N> second) : v(value), d0(first), d1(second) {}
+    PERCUSS_INLINE Pair(TwoLanes value, Vector<N> first, Vector<N> second) : v(value), d0(first), d1(second) {}
     PERCUSS_INLINE Pair(const Dual<N>& first, const Dual<N>& second)
         : v{first.v, second.v},
           d0(first.d),
@@ -138,10 +186,10 @@ struct Pair<Dual<N>> {
     PERCUSS_INLINE Dual<N> second() const { return {v[1], d1}; }
     PERCUSS_INLINE void add_product(const Pair& x, const Pair& y) {
         v += x.v * y.v;
-        d0 += x.d0 * y.v[0];
-        d0 += y.d0 * x.v[0];
-        d1 += x.d1 * y.v[1];
-        d1 += y.d1 * x.v[1];
+        d0.add_scaled(x.d0, y.v[0]);
+        d0.add_scaled(y.d0, x.v[0]);
+        d1.add_scaled(x.d1, y.v[1]);
+        d1.add_scaled(y.d1, x.v[1]);
     }
     friend PERCUSS_INLINE Pair operator+(const Pair& x, const Pair& y) { return {x.v + y.v, x.d0 + y.d0, x.d1 + y.d1}; }
     friend PERCUSS_INLINE Pair operator-(const Pair& x, const Pair& y) { return {x.v - y.v, x.d0 - y.d0, x.d1 - y.d1}; }
@@ -152,6 +200,33 @@ struct Pair<Dual<N>> {
         return {x.v * s.v, x.d0 * s.v + s.d * x.v[0], x.d1 * s.v + s.d * x.v[1]};
     }
     friend PERCUSS_INLINE Pair operator*(double s, const Pair& x) { return {x.v * s, x.d0 * s, x.d1 * s}; }
+};
+
+/// Coefficients of a pair of power series. Values and derivative parts are kept apart, so that a convolution touches as
+/// little memory as it can: a kernel's series must fit the first-level cache.
+template <class T, int N>
+class PairSeries {
+public:
+    PERCUSS_INLINE const Pair<T>& operator[](int i) const { return c_[i]; }
+    PERCUSS_INLINE void set(int i, const Pair<T>& value) { c_[i] = value; }
+
+private:
+    std::array<Pair<T>, N> c_;
+};
+
+template <int L, int N>
+class PairSeries<Dual<L>, N> {
+public:
+    PERCUSS_INLINE Pair<Dual<L>> operator[](int i) const { return {v_[i], d_[2 * i], d_[2 * i + 1]}; }
+    PERCUSS_INLINE void set(int i, const Pair<Dual<L>>& value) {
+        v_[i] = value.v;
+        d_[2 * i] = value.d0;
+        d_[2 * i + 1] = value.d1;
+    }
+
+private:
+    TwoLanes v_[N];
+    Vector<L> d_[2 * N];
 };
 
 }  // namespace PERCUSS_ISA

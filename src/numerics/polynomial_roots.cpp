@@ -126,13 +126,23 @@ void isolate(const Search& search, const Coefficients& b, double lower, double w
     isolate(search, right, lower + 0.5 * width, 0.5 * width, depth + 1);
 }
 
+/// A root at the upper end, where as many Bernstein coefficients vanish as its multiplicity.
+void check_upper_end(const Search& search, const Coefficients& b) {
+    int last = search.degree;
+    while (last > 0 && b[static_cast<std::size_t>(last)] == 0.0) { --last; }
+    const bool crosses = (search.degree - last) % 2 == 1;
+    if (crosses && !search.full()) { record(search, 1.0, b[static_cast<std::size_t>(last)] > 0.0 ? -1 : 1); }
+}
+
 Roots run(const double* c, int degree, int wanted) {
     Roots roots;
     while (degree > 0 && c[degree] == 0.0) { --degree; }
     if (degree <= 0) { return roots; }
     Coefficients b{};
     to_bernstein(c, degree, b);
-    isolate({c, degree, wanted, &roots}, b, 0.0, 1.0, 0);
+    const Search search{c, degree, wanted, &roots};
+    isolate(search, b, 0.0, 1.0, 0);
+    check_upper_end(search, b);
     return roots;
 }
 

@@ -10,7 +10,7 @@ const Evaluation failed_evaluation{};
 const Evaluation& Guard::operator()(const Vector& x, bool want_gradient) noexcept {
     if (halted()) return failed_evaluation;
     try {
-        if (++calls_ > max_calls()) throw Halt(Halt::Reason::budget, "the method goes in circles over known points");
+        if (++calls_ > max_calls()) throw Halt(Halt::Reason::circling, "the method goes in circles over known points");
         const Evaluation& evaluation = nlp_.look_up(x, want_gradient);
         if (evaluation.ok) last_ = nlp_.clip(x);
         return evaluation;

@@ -10,7 +10,8 @@ namespace percuss::optimise {
 
 /// Evaluates for one run of a solver. The first exception, Halt or other, is kept, and from then on every call is a
 /// failed evaluation, so that an adapter only has to look at halted() and leave its solver. A solver that goes in
-/// circles over known points (which cost nothing) is halted after 10 max_evaluations + 1000 calls.
+/// circles over known points, which cost nothing, is halted after 10 max_evaluations + 1000 calls (NLopt 2.7.1's COBYLA
+/// does that for ever on some problems without a feasible point).
 class Guard {
 public:
     explicit Guard(MemoisedNlp& nlp) : nlp_(nlp) {}

@@ -101,7 +101,7 @@ Evaluation MemoisedNlp::call(const Vector& x, bool want_gradient) {
     const Eigen::Index m = constraints_;
     if (evaluation.constraints.size() != m) wrong_size("constraints", evaluation.constraints.size(), m);
     if (!std::isfinite(evaluation.objective) || !evaluation.constraints.allFinite()) return Evaluation{};
-    if (want_gradient) {
+    if (want_gradient || evaluation.gradient.size() > 0) {  // one that came unasked is kept too
         if (evaluation.gradient.size() != n) wrong_size("gradient", evaluation.gradient.size(), n);
         if (evaluation.jacobian.rows() != m || (m > 0 && evaluation.jacobian.cols() != n)) {
             wrong_size("jacobian", evaluation.jacobian.size(), m * n);

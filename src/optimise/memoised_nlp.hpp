@@ -12,10 +12,10 @@
 
 namespace percuss::optimise {
 
-/// Thrown by MemoisedNlp::evaluate instead of a further evaluation. Solvers catch it and report Status::budget.
+/// Thrown by MemoisedNlp::evaluate instead of a further evaluation; also the reason why a Guard ended a run.
 class Halt : public std::runtime_error {
 public:
-    enum class Reason { budget, stop };
+    enum class Reason { budget, stop, circling };
     Halt(Reason reason, const std::string& message) : std::runtime_error(message), reason_(reason) {}
     [[nodiscard]] Reason reason() const { return reason_; }
 

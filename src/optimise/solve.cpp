@@ -105,7 +105,7 @@ Outcome settle(Guard& guard, const SolverAnswer& answer) {
     else if (memo.least_infeasible()) fill(outcome, *memo.least_infeasible(), tolerance);
 
     if (const std::optional<Halt> halt = guard.halt()) {
-        outcome.status = Status::budget;
+        outcome.status = halt->reason() == Halt::Reason::circling ? Status::failed : Status::budget;
         outcome.message = halt->what();
     } else if (solution && answer.claim == SolverAnswer::Claim::optimum) {
         outcome.status = Status::converged;
