@@ -98,6 +98,39 @@ TEST_CASE("a bounce off the stop: closed form, both laws") {
     }
 }
 
+TEST_CASE(
+    "on a free mass the peak acceleration is the peak force, also when it is reached in the first step of contact") {
+    for (const Backend& backend : backends) {
+        CAPTURE(backend.name);
+        const auto integrator = backend.make(test::spring(), 1e-8);
+        for (const double damping : {0.0, 1.0, 3.0, 5.0, 5.5, 5.8, 6.0, 7.0}) {
+            CAPTURE(damping);
+            Case c = flight();
+            c.parameters[model::spring::stop_damping] = damping;
+            const flow::Observables seen = test::run(*integrator, c).observables;
+            CHECK(seen.peak_acceleration.value == doctest::Approx(seen.peak_force.value).epsilon(1e-12));
+        }
+    }
+}
+
+TEST_CASE("a contact far shallower than the tolerance is one contact") {
+    Case c{test::paper_defaults, {}};
+    c.request.theta = 3.3;
+    c.request.duration = 3.0;
+    c.request.starts_in_contact = true;
+    for (const Backend& backend : backends) {
+        CAPTURE(backend.name);
+        const auto integrator = backend.make(test::membranes(), 1e-12);
+        for (const double speed : {1e-3, 1e-6, 1e-9, 1e-12}) {
+            CAPTURE(speed);
+            c.request.state = {0.5, speed, 1.18, 1.19};
+            const Result result = test::run(*integrator, c);
+            CHECK(result.status == Status::ok);
+            CHECK(result.contacts.size() == 1);
+        }
+    }
+}
+
 TEST_CASE("an overshoot a thousand times shorter than a step is found, and none is invented") {
     // Steady oscillation of amplitude A = 1 exactly; the mass is beyond 1 - 1e-9 for 9e-5 of a cycle's 6.3.
     const double w = 0.9;

@@ -56,7 +56,7 @@ public:
             observer_.step(order_, step_, touching(), event_ != Event::none);
             advance();
             if (event_ != Event::none) { cross(); }
-            if (event_ == Event::none && finished_) { status_ = Status::ok; }
+            if (event_ == Event::none && finished_ && status_ == Status::not_run) { status_ = Status::ok; }
             if (++steps_ >= request.max_steps && status_ == Status::not_run) { status_ = Status::too_many_steps; }
         }
         observer_.end(touching());
@@ -110,20 +110,38 @@ private:
         const double scale = std::max(1.0, static_cast<double>(size));
         double h = 1e300;
         for (int j : {order_ - 1, order_}) {
-            const double c = static_cast<double>(jet_.norm(j));
+            const double c = static_cast<double>(jet_.norm(j)) / scale;
             if (!(c < 1e300) || !(scale < 1e6)) {
                 status_ = Status::diverged;
                 step_ = 0;
                 finished_ = true;
                 return;
             }
-            if (c > 0) { h = std::min(h, std::pow(scale / c, 1.0 / j)); }
+            const double largest = std::max(c, lane_growth(j));
+            if (largest > 0) { h = std::min(h, std::pow(largest, -1.0 / j)); }
         }
         h = std::min(h * safety_, 3.0);
         const Base remaining = duration_ - elapsed_;
         const Base room = remaining < 0 ? -remaining : remaining;
         finished_ = !(room > Base(h));
         step_ = finished_ ? remaining : (remaining < 0 ? Base(-h) : Base(h));
+    }
+
+    /// Largest ratio, over the lanes, of the j-th coefficients to the first ones. A quasi-static motion has tiny
+    /// coefficients while its sensitivities swing at the natural frequency: they need their own say in the step.
+    [[nodiscard]] double lane_growth([[maybe_unused]] int j) const {
+        double growth = 0.0;
+        if constexpr (lanes > 0) {
+            for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i) {
+                double first = 0.0;
+                for (int n = 0; n < 3; ++n) {
+                    first = std::max({first, std::abs(jet_.x()[n].d[i]), std::abs(jet_.v()[n].d[i])});
+                }
+                const double last = std::max(std::abs(jet_.x()[j].d[i]), std::abs(jet_.v()[j].d[i]));
+                if (last > growth * first && first > 0.0) { growth = last / first; }
+            }
+        }
+        return growth;
     }
 
     /// The next event inside the step, if any, shortens it. A polynomial bound rules most steps out; the rest go to

@@ -28,6 +28,7 @@ struct Run {
     nlopt_opt handle;
     bool gradient;  ///< values are computed together with gradients, since the method will ask for both
     double penalty;
+    int objectives = 0;  ///< calls of the objective
 };
 
 /// Row -1 is the objective, the others are constraints.
@@ -37,12 +38,14 @@ struct Row {
 };
 
 /// Nothing may be thrown through NLopt: the guard keeps errors. The end is asked for from inside the callback, because
-/// COBYLA does not always look at its own limits.
+/// COBYLA does not always look at its own limits; not before the second point, because DIRECT with constraints, stopped
+/// at its first, returns through an index that it has not set (NLopt 2.7.1, minpos in DIRect.c).
 double callback(unsigned n, const double* x, double* gradient, void* data) noexcept {
     const auto& [run, row] = *static_cast<const Row*>(data);
     const bool objective = row < 0;
     const Evaluation& here = run->guard(Eigen::Map<const Vector>(x, n), run->gradient || gradient != nullptr);
-    if (run->guard.halted()) nlopt_force_stop(run->handle);
+    if (objective) ++run->objectives;
+    if (run->guard.halted() && run->objectives > 1) nlopt_force_stop(run->handle);
     if (gradient != nullptr) {
         Eigen::Map<Vector> out(gradient, n);
         if (!here.ok) out.setZero();
