@@ -109,7 +109,7 @@ private:
             return stop_force(y[0], y[1]);
         };
         const Real fastest = std::sqrt(k_ + (mode_ == Mode::contact ? stop_k_ : 0.0L)) + w_;
-        const Real sample = 2e-3L * w_ / fastest;
+        const Real sample = 4e-3L * w_ / fastest;
         Real last = theta_;
         for (bool first = true; last < end; first = false) {
             const Real next = std::min(end, last + sample);
@@ -173,7 +173,8 @@ private:
         contacts_.back().open_out = at_end;
     }
 
-    /// Force, impulse and work of a contact piece by Simpson's rule with 4000 intervals: error (1/4000)^4.
+    /// Force, impulse and work of a contact piece by Boole's rule on 4000 intervals, at most 0.02 rad of the fastest
+    /// motion each: relative error 0.02^6.
     void integrate(const Piece& p, Real end) {
         constexpr int n = 4000;
         const Real h = (end - theta_) / n;
@@ -181,7 +182,8 @@ private:
         for (int i = 0; i <= n; ++i) {
             const auto y = p.at(theta_ + h * i);
             const Real f = stop_force(y[0], y[1]);
-            const Real weight = (i == 0 || i == n ? 1 : (i % 2 == 1 ? 4 : 2)) * h / 3 / w_;
+            constexpr std::array<int, 4> boole = {14, 32, 12, 32};
+            const Real weight = (i == 0 || i == n ? 7 : boole[static_cast<std::size_t>(i % 4)]) * 2 * h / 45 / w_;
             impulse_ += weight * f;
             work_ += weight * f * y[1];
             if (f > peak_) {

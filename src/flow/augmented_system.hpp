@@ -96,7 +96,9 @@ public:
     [[nodiscard]] long evaluations() const { return evaluations_; }
 
 private:
-    [[nodiscard]] std::size_t index(int column, int i) const { return static_cast<std::size_t>(column * block() + i); }
+    [[nodiscard]] std::size_t index(int column, int i) const {
+        return static_cast<std::size_t>(column) * static_cast<std::size_t>(block()) + static_cast<std::size_t>(i);
+    }
     [[nodiscard]] double parameter(int i) const { return parameters_[static_cast<std::size_t>(i)]; }
     [[nodiscard]] double parameter_d(int i, int lane) const {
         return directions_[static_cast<std::size_t>(lane)].parameter[static_cast<std::size_t>(i)];

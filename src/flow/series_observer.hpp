@@ -91,10 +91,9 @@ public:
         if (on_surface) {
             shift = time_shift(v);
         } else {
-            const T force = jet_.stop_stiffness() * (jet_.position() - jet_.stop_position()) + jet_.stop_damping() * v;
             const Base slope = numerics::base(jet_.stop_stiffness()) * numerics::base(v) +
                                numerics::base(jet_.stop_damping()) * numerics::base(end_acceleration_);
-            shift = lanes_only(force) * (Base(-1) / slope);
+            shift = lanes_only(force()) * (Base(-1) / slope);
         }
         if ((mask_ & observe_force) != 0U) {
             if (on_surface) {
@@ -108,7 +107,10 @@ public:
     }
 
     void end(bool touching) {
-        if (touching) { close_contact(theta_, true); }
+        if (touching) {
+            if ((mask_ & observe_force) != 0U) { contact_peak_.raise(force(), theta_); }  // may still be rising
+            close_contact(theta_, true);
+        }
         if ((mask_ & observe_extrema) != 0U) {
             x_max_.raise(jet_.position(), theta_);
             negative_x_min_.raise(-jet_.position(), theta_);
@@ -159,6 +161,11 @@ private:
         } else {
             return T(0.0);
         }
+    }
+    /// Of the stop, at the expansion point.
+    [[nodiscard]] T force() const {
+        return jet_.stop_stiffness() * (jet_.position() - jet_.stop_position()) +
+               jet_.stop_damping() * jet_.velocity();
     }
     [[nodiscard]] T displacement_lanes() const { return lanes_only(jet_.position() - jet_.stop_position()); }
     [[nodiscard]] T time_shift(const T& v) const { return displacement_lanes() * (Base(-1) / numerics::base(v)); }

@@ -24,6 +24,10 @@ inline namespace PERCUSS_ISA {
 
 enum class Law : std::uint8_t { kelvin_voigt, no_tension, none };
 
+/// Derivative parts of the series stop this many orders before the values. With steps of radius/e^2 the loss is
+/// e^(-2 order): 5e-12 relative at order 17, for less than two thirds of the work.
+inline constexpr int derivative_orders_saved = 4;
+
 template <class Jet>
 class TaylorRun {
 public:
@@ -37,6 +41,7 @@ public:
         : jet_(parameters),
           law_(law),
           order_(std::min(order, Jet::max_order)),
+          derivative_order_(lanes > 0 ? std::max(4, order_ - derivative_orders_saved) : order_),
           safety_(std::exp(-2.0 - 0.7 / (order_ - 1))),
           observer_(jet_) {}
 
@@ -50,7 +55,7 @@ public:
         enter_first_phase();
         observer_.begin(request.observe, numerics::base(theta_), touching());
         while (status_ == Status::not_run) {
-            jet_.expand(theta_at(), touching(), order_);
+            jet_.expand(theta_at(), touching(), order_, derivative_order_);
             choose_step();
             locate_event();
             observer_.step(order_, step_, touching(), event_ != Event::none);
@@ -117,7 +122,7 @@ private:
                 finished_ = true;
                 return;
             }
-            const double largest = std::max(c, lane_growth(j));
+            const double largest = std::max(c, lane_growth(j - order_ + derivative_order_, j));
             if (largest > 0) { h = std::min(h, std::pow(largest, -1.0 / j)); }
         }
         h = std::min(h * safety_, 3.0);
@@ -129,7 +134,9 @@ private:
 
     /// Largest ratio, over the lanes, of the j-th coefficients to the first ones. A quasi-static motion has tiny
     /// coefficients while its sensitivities swing at the natural frequency: they need their own say in the step.
-    [[nodiscard]] double lane_growth([[maybe_unused]] int j) const {
+    /// j: a coefficient that the lanes have; value_order: the one that the step is measured by, so that the answer is
+    /// (growth per order)^value_order.
+    [[nodiscard]] double lane_growth([[maybe_unused]] int j, [[maybe_unused]] int value_order) const {
         double growth = 0.0;
         if constexpr (lanes > 0) {
             for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i) {
@@ -140,6 +147,7 @@ private:
                 const double last = std::max(std::abs(jet_.x()[j].d[i]), std::abs(jet_.v()[j].d[i]));
                 if (last > growth * first && first > 0.0) { growth = last / first; }
             }
+            if (j != value_order) { growth = std::pow(growth, static_cast<double>(value_order) / j); }
         }
         return growth;
     }
@@ -188,7 +196,7 @@ private:
             power *= h;
             if (j > 0) { bound += std::max(0.0, unit * c[j]); }
         }
-        const bool already = unit * c[0] > 0.0;  // crossed by rounding at the very start
+        const bool already = unit * c[0] >= 0.0;  // on the surface, or crossed by rounding, at the very start
         if (already && unit * c[1] > 0.0 && !deflate_) { return accept(event, Base(0)); }
         if (unit * c[0] + bound < 0.0) { return; }
         double t = 0.0;
@@ -295,6 +303,7 @@ private:
     Jet jet_;
     Law law_;
     int order_;
+    int derivative_order_;
     double safety_;
     SeriesObserver<Jet> observer_;
     const Request* request_ = nullptr;

@@ -21,6 +21,7 @@
 namespace percuss::model {
 inline namespace PERCUSS_ISA {
 
+using numerics::as;
 using numerics::base;
 using numerics::Pair;
 using numerics::ScalarTraits;
@@ -94,9 +95,14 @@ public:
 
     /// Coefficients of x and v up to `order`, of everything else up to `order - 1`. theta is the phase at the expansion
     /// point; `touching` adds the stop's force.
-    void expand(const T& theta, bool touching, int order) {
+    void expand(const T& theta, bool touching, int order) { expand(theta, touching, order, order); }
+
+    /// As above, with derivative parts only up to `derivative_order` and zero beyond.
+    void expand(const T& theta, bool touching, int order, int derivative_order) {
         start(theta);
-        for (int n = 0; n < order; ++n) { extend(n, touching); }
+        int n = 0;
+        for (; n < derivative_order; ++n) { extend<T>(n, touching); }
+        for (; n < order; ++n) { extend<Base>(n, touching); }
     }
 
     /// Moves the expansion point by h.
@@ -226,8 +232,8 @@ private:
     }
 
     /// phi^2 = phi_pp^2/4 (1 -+ 2 cos theta + cos^2 theta), coefficient n.
-    Pair<T> drive(int n) {
-        // derivatives of cos cycle: cos, -sin, -cos, sin
+    template <class S>
+    Pair<S> drive(int n) {
         if (n > 0) {
             inverse_factorial_ = inverse_factorial_ / static_cast<Base>(n);
             power_of_two_ = power_of_two_ * 2;
@@ -235,71 +241,94 @@ private:
             inverse_factorial_ = 1;
             power_of_two_ = 1;
         }
-        const T& cycle1 = (n % 2 == 0) ? cos1_0() : sin1_;
-        const T& cycle2 = (n % 2 == 0) ? cos2_ : sin2_;
+        // derivatives of cos cycle: cos, -sin, -cos, sin
+        const S& cycle1 = as<S>(n % 2 == 0 ? cos1_[0] : sin1_);
+        const S& cycle2 = as<S>(n % 2 == 0 ? cos2_ : sin2_);
         const Base sign = (n % 4 == 1 || n % 4 == 2) ? Base(-1) : Base(1);
-        const T c1 = cycle1 * (sign * inverse_factorial_);
-        const T c2 = cycle2 * (sign * inverse_factorial_ * power_of_two_);
-        if (n > 0) { cos1_[n] = c1; }
-        const T even = (n == 0 ? T(1.5) : T(0.0)) + 0.5 * c2;
-        return Pair<T>(phi_mean_ * (even - 2.0 * c1), phi_mean_ * (even + 2.0 * c1));
+        const S c1 = cycle1 * (sign * inverse_factorial_);
+        const S c2 = cycle2 * (sign * inverse_factorial_ * power_of_two_);
+        if (n > 0) { cos1_[n] = T(c1); }
+        const S even = (n == 0 ? S(1.5) : S(0.0)) + 0.5 * c2;
+        const S& mean = as<S>(phi_mean_);
+        return Pair<S>(mean * (even - 2.0 * c1), mean * (even + 2.0 * c1));
     }
-    [[nodiscard]] const T& cos1_0() const { return cos1_[0]; }
 
-    /// From coefficients 0..n of x, v, L (and the internal series) to coefficient n + 1.
+    /// From coefficients 0..n of x, v, L (and the internal series) to coefficient n + 1, in S: the scalar T, or its base
+    /// type where the derivative parts are left out.
+    template <class S>
     void extend(int n, bool touching) {
         const Base reciprocal = Base(1) / static_cast<Base>(n + 1);
-        x_[n + 1] = v_[n] * inverse_omega_ * reciprocal;
-        u_.set(n + 1, Pair<T>(x_[n + 1]));
+        const S& inverse_omega = as<S>(inverse_omega_);
+        const S& speed = as<S>(v_[n]);
+        x_[n + 1] = T(speed * inverse_omega * reciprocal);
+        u_.set(n + 1, Pair<S>(as<S>(x_[n + 1])));
 
         // All convolutions over already known coefficients, in one sweep.
-        const Pair<T> zero(T(0.0));
-        Pair<T> square = u_[0] * u_[n + 1];
-        Pair<T> sw = zero, pw = zero, qw = zero, rw = zero, lz = zero, mz = zero, se = zero, ub = zero;
+        const Pair<S> zero(S(0.0));
+        const Pair<S> first_u = u_.template get<S>(0);
+        const Pair<S> next_u = u_.template get<S>(n + 1);
+        Pair<S> square = first_u * next_u;
+        Pair<S> sw = zero, pw = zero, qw = zero, rw = zero, lz = zero, mz = zero, se = zero, ub = zero;
         for (int j = 1; j <= n; ++j) {
-            square.add_product(u_[j], u_[n + 1 - j]);
-            sw.add_product(s_[j], w_[n - j]);
-            pw.add_product(p_[j], w_[n - j]);
-            qw.add_product(q_[j], w_[n - j]);
-            rw.add_product(root_[j], w_[n - j]);
-            se.add_product(s_[j], e_[n - j]);
-            ub.add_product(u_[j], b_[n - j]);
+            const Pair<S> u = u_.template get<S>(j);
+            const Pair<S> s = s_.template get<S>(j);
+            const Pair<S> w = w_.template get<S>(n - j);
+            square.add_product(u, u_.template get<S>(n + 1 - j));
+            sw.add_product(s, w);
+            pw.add_product(p_.template get<S>(j), w);
+            qw.add_product(q_.template get<S>(j), w);
+            rw.add_product(root_.template get<S>(j), w);
+            se.add_product(s, e_.template get<S>(n - j));
+            ub.add_product(u, b_.template get<S>(n - j));
             if constexpr (Viscous) {
-                lz.add_product(l_[j], z_[n - j]);
-                mz.add_product(m_[j], z_[n - j]);
+                const Pair<S> z = z_.template get<S>(n - j);
+                lz.add_product(l_.template get<S>(j), z);
+                mz.add_product(m_.template get<S>(j), z);
             }
         }
-        s_.set(n + 1, square + u_[n + 1] * u_[0]);
-        w_.set(n, inverse_s_ * (static_cast<Base>(n + 1) * s_[n + 1] - sw));
-        pw.add_product(p_[0], w_[n]);
-        qw.add_product(q_[0], w_[n]);
-        rw.add_product(root_[0], w_[n]);
-        p_.set(n + 1, (half_alpha_a_ * reciprocal) * pw);
-        q_.set(n + 1, (-half_alpha_a_ * reciprocal) * qw);
-        ds_.set(n, Base(-0.5) * rw);
-        root_.set(n + 1, reciprocal * ds_[n]);
+        const Pair<S> inverse_s = numerics::pair_as<S>(inverse_s_);
+        const S& half_alpha = as<S>(half_alpha_a_);
+        const Pair<S> next_s = square + next_u * first_u;
+        const Pair<S> w = inverse_s * (static_cast<Base>(n + 1) * next_s - sw);
+        s_.set(n + 1, next_s);
+        w_.set(n, w);
+        pw.add_product(p_.template get<S>(0), w);
+        qw.add_product(q_.template get<S>(0), w);
+        rw.add_product(root_.template get<S>(0), w);
+        p_.set(n + 1, (half_alpha * reciprocal) * pw);
+        q_.set(n + 1, (-half_alpha * reciprocal) * qw);
+        const Pair<S> slope = Base(-0.5) * rw;
+        ds_.set(n, slope);
+        root_.set(n + 1, reciprocal * slope);
 
-        Pair<T> stress = k1_ * p_[n] - k2_ * q_[n];
+        Pair<S> stress = as<S>(k1_) * p_.template get<S>(n) - as<S>(k2_) * q_.template get<S>(n);
         if constexpr (Viscous) {
-            r_.set(n, relaxation_ * (l_[n] - Base(0.5) * m_[n] - (n == 0 ? Pair<T>(T(0.5)) : zero)));
-            z_.set(n, alpha_b_ * (Base(0.5) * w_[n] - r_[n]));
-            lz.add_product(l_[0], z_[n]);
-            mz.add_product(m_[0], z_[n]);
+            const Pair<S> l = l_.template get<S>(n);
+            const Pair<S> m = m_.template get<S>(n);
+            const Pair<S> r = as<S>(relaxation_) * (l - Base(0.5) * m - (n == 0 ? Pair<S>(S(0.5)) : zero));
+            const Pair<S> z = as<S>(alpha_b_) * (Base(0.5) * w - r);
+            r_.set(n, r);
+            z_.set(n, z);
+            lz.add_product(l_.template get<S>(0), z);
+            mz.add_product(m_.template get<S>(0), z);
             l_.set(n + 1, reciprocal * lz);
             m_.set(n + 1, (-reciprocal) * mz);
-            stress = stress + k3_ * (l_[n] - m_[n]);
+            stress = stress + as<S>(k3_) * (l - m);
         }
-        e_.set(n, inverse_s_ * (stress - se));
-        phi2_.set(n, drive(n));
-        b_.set(n, e_[n] - damping_rate_ * ds_[n] - phi2_[n]);
-        ub.add_product(u_[0], b_[n]);
+        const Pair<S> e = inverse_s * (stress - se);
+        const Pair<S> phi2 = drive<S>(n);
+        const Pair<S> b = e - as<S>(damping_rate_) * slope - phi2;
+        e_.set(n, e);
+        phi2_.set(n, phi2);
+        b_.set(n, b);
+        ub.add_product(first_u, b);
 
-        T acceleration = -layers_ * (ub.first() + ub.second());
+        S acceleration = -as<S>(layers_) * (ub.first() + ub.second());
         if (touching) {
-            const T penetration = n == 0 ? x_[0] - x_stop_ : x_[n];
-            acceleration -= stiffness_ * penetration + damping_ * v_[n];
+            const S penetration = n == 0 ? as<S>(x_[0]) - as<S>(x_stop_) : as<S>(x_[n]);
+            acceleration -= as<S>(stiffness_) * penetration + as<S>(damping_) * speed;
         }
-        v_[n + 1] = acceleration * inverse_omega_ * reciprocal;
+        v_[n + 1] = T(acceleration * inverse_omega * reciprocal);
     }
 
     T length_, x_stop_, stiffness_, damping_, omega_, inverse_omega_, half_alpha_a_, alpha_b_, log_prestretch_, layers_,

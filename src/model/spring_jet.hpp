@@ -50,6 +50,8 @@ public:
     T& position() { return x_[0]; }
     T& velocity() { return v_[0]; }
 
+    /// Derivative parts are so cheap here that they always have the full order.
+    void expand(const T& theta, bool touching, int order, int /*derivative_order*/) { expand(theta, touching, order); }
     void expand(const T& theta, bool touching, int order) {
         using std::cos;
         using std::sin;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <cstddef>
 
 #ifndef PERCUSS_ISA
@@ -136,6 +137,16 @@ PERCUSS_INLINE const double& base(const Dual<N>& a) {
 
 using TwoLanes = typename Register<2>::type;
 
+/// a as an S, which is T itself or its base type.
+template <class S, class T>
+PERCUSS_INLINE const S& as(const T& a) {
+    if constexpr (std::is_same_v<S, T>) {
+        return a;
+    } else {
+        return base(a);
+    }
+}
+
 /// Two scalars worked on together: the two membranes of an actuator.
 template <class T>
 struct Pair {
@@ -202,12 +213,26 @@ struct Pair<Dual<N>> {
     friend PERCUSS_INLINE Pair operator*(double s, const Pair& x) { return {x.v * s, x.d0 * s, x.d1 * s}; }
 };
 
+/// A pair as a pair of S.
+template <class S, class T>
+PERCUSS_INLINE Pair<S> pair_as(const Pair<T>& p) {
+    if constexpr (std::is_same_v<S, T>) {
+        return p;
+    } else {
+        return Pair<S>(p.v);
+    }
+}
+
 /// Coefficients of a pair of power series. Values and derivative parts are kept apart, so that a convolution touches as
 /// little memory as it can: a kernel's series must fit the first-level cache.
 template <class T, int N>
 class PairSeries {
 public:
     PERCUSS_INLINE const Pair<T>& operator[](int i) const { return c_[i]; }
+    template <class S>
+    PERCUSS_INLINE const Pair<T>& get(int i) const {
+        return c_[i];
+    }
     PERCUSS_INLINE void set(int i, const Pair<T>& value) { c_[i] = value; }
 
 private:
@@ -218,6 +243,21 @@ template <int L, int N>
 class PairSeries<Dual<L>, N> {
 public:
     PERCUSS_INLINE Pair<Dual<L>> operator[](int i) const { return {v_[i], d_[2 * i], d_[2 * i + 1]}; }
+    /// Coefficient i as a pair of S: Dual<L>, or double for the values alone.
+    template <class S>
+    PERCUSS_INLINE Pair<S> get(int i) const {
+        if constexpr (std::is_same_v<S, double>) {
+            return Pair<double>(v_[i]);
+        } else {
+            return (*this)[i];
+        }
+    }
+    /// A value without derivatives.
+    PERCUSS_INLINE void set(int i, const Pair<double>& value) {
+        v_[i] = value.v;
+        d_[2 * i] = Vector<L>{};
+        d_[2 * i + 1] = Vector<L>{};
+    }
     PERCUSS_INLINE void set(int i, const Pair<Dual<L>>& value) {
         v_[i] = value.v;
         d_[2 * i] = value.d0;
