@@ -18,23 +18,24 @@ orbit::ReturnMap FreeBranch::half_cycle() {
     return map;
 }
 
-/// What counts as one unit of each state: without this a resonance peak is a ripple in the norm that steps are measured
-/// in, and a step can leap over it.
-static flow::State measure_of(const flow::System& system) {
-    const double centre = system.integrator->centre(system.parameters);
-    const double size = std::max(std::abs(system.stop_position() - centre), 1e-3);
-    flow::State measure;
-    measure.fill(size);
-    measure[1] = size * system.integrator->linear_resonance(system.parameters);
-    return measure;
+/// What counts as one unit of displacement; speeds follow at resonance. Without this a resonance peak is a ripple in the
+/// norm that steps are measured in, and a step can leap over it.
+void FreeBranch::set_measure(double size) {
+    measure_.fill(size);
+    measure_[1] = size * scale_;
 }
 
 FreeBranch::FreeBranch(const flow::System& system)
     : system_(system),
       scale_(system.integrator->linear_resonance(system.parameters)),
-      measure_(measure_of(system)),
       walker_([this](const SmallVector& u, SmallVector& f, SmallMatrix& j) { return evaluate(u, f, j); },
-              {.first_step = 0.2, .largest_step = 0.5, .target_angle = 0.2, .largest_angle = 0.5}) {}
+              {.first_step = 0.2,
+               .largest_step = 20.0,
+               .largest_parameter_step = 0.5,
+               .target_angle = 0.2,
+               .largest_angle = 0.5}) {
+    set_measure(1.0);
+}
 
 SmallVector FreeBranch::to_scaled(const flow::State& y, double omega) const {
     const int n = system_.states();
@@ -103,7 +104,18 @@ bool FreeBranch::start(double omega) {
     flow::State guess = system_.integrator->rest_state(system_.parameters);
     const auto settled = orbit::settle(there, guess, 4, flow::StopMode::off);
     if (settled) { guess = *settled; }
-    if (!walker_.start(to_scaled(guess, omega), -1.0)) { return false; }
+    const orbit::Orbit orbit = orbit::find_orbit(there, half_cycle(), guess);
+    if (!orbit.ok()) { return false; }
+    // The response well above resonance, times the ratio of stiffness forces, is about the static one: peaks are told by
+    // that, or by the gap where it is smaller.
+    const orbit::Image image =
+        orbit::apply(there, half_cycle(), orbit.state, orbit::Differentiate::nothing, {}, flow::observe_extrema);
+    if (!image.ok()) { return false; }
+    const double gap = there.stop_position() - there.integrator->centre(there.parameters);
+    const double amplitude = clearance(there, half_cycle(), image, {}).value + gap;
+    const double ratio = omega / scale_;
+    set_measure(std::max(std::min(gap, amplitude * std::max(1.0, ratio * ratio - 1.0)), 1e-4));
+    if (!walker_.start(to_scaled(orbit.state, omega), -1.0)) { return false; }
     current_ = describe();
     previous_ = current_;
     return true;

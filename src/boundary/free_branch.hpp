@@ -45,13 +45,14 @@ public:
 private:
     bool evaluate(const numerics::SmallVector& u, numerics::SmallVector& f, numerics::SmallMatrix& jacobian);
     [[nodiscard]] FreePoint describe() const;
+    void set_measure(double size);
 
     flow::System system_;
     [[nodiscard]] numerics::SmallVector to_scaled(const flow::State& y, double omega) const;
     [[nodiscard]] flow::State to_state(const numerics::SmallVector& u) const;
 
     double scale_;         ///< frequencies are divided by this
-    flow::State measure_;  ///< and states by these: the gap, and the speed of a motion of that size at resonance
+    flow::State measure_;  ///< and states by these, see set_measure()
     orbit::Image image_;
     double image_omega_ = 0.0;
     numerics::ArclengthWalker walker_;

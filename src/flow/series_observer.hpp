@@ -8,6 +8,7 @@
 #include "numerics/dual.hpp"
 #include "numerics/polynomial_roots.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -45,11 +46,13 @@ public:
         if (touching) { open_contact(theta, true); }
     }
 
-    /// Called with the series of a step of length h, before it is taken. `event`: the step ends at an event.
-    void step(int order, const Base& h, bool touching, bool event) {
+    /// Called with the series of a step of length h, before it is taken. `event`: the step ends at an event; `last`: it
+    /// ends the run.
+    void step(int order, const Base& h, bool touching, bool event, bool last) {
         if (mask_ != observe_nothing) {
             order_ = order;
             h_ = h;
+            last_ = last;
             if ((mask_ & observe_extrema) != 0U) { watch_extrema(); }
             if (touching && (mask_ & observe_force) != 0U) { watch_force(); }
             if ((mask_ & observe_acceleration) != 0U) { watch_acceleration(); }
@@ -64,19 +67,22 @@ public:
         theta_ += h;
     }
 
-    /// Entry into contact: state on the surface, lanes still at fixed time.
-    void enter(const Base& theta) {
+    /// Start of contact: entry on the surface, or (no-tension law) the force coming back inside the stop. Lanes still at
+    /// fixed time.
+    void enter(const Base& theta, bool on_surface) {
         open_contact(theta, false);
         if ((mask_ & (observe_force | observe_acceleration)) == 0U) { return; }
-        const T v = jet_.velocity();
-        const T shift = time_shift(v);  // d(tau_e), value zero
-        const T speed = v + shift * numerics::base(end_acceleration_);
+        const T shift = event_shift(on_surface);
         if ((mask_ & observe_force) != 0U) {
-            impact_velocity_.raise(speed, theta);
-            contact_peak_.raise(jet_.stop_damping() * speed, theta);
-            const T overlap = displacement_lanes();
-            impulse_ += jet_.stop_damping() * overlap;
-            work_ += jet_.stop_damping() * v * overlap;
+            if (on_surface) {
+                const T v = jet_.velocity();
+                const T speed = v + shift * numerics::base(end_acceleration_);
+                impact_velocity_.raise(speed, theta);
+                contact_peak_.raise(jet_.stop_damping() * speed, theta);
+                const T overlap = displacement_lanes();
+                impulse_ += jet_.stop_damping() * overlap;
+                work_ += jet_.stop_damping() * v * overlap;
+            }
             contact_time_ -= (T(theta) + shift * jet_.omega()) * jet_.inverse_omega();
         }
         discontinuity(shift, theta);
@@ -86,20 +92,12 @@ public:
     void exit(const Base& theta, bool on_surface) {
         close_contact(theta, false);
         if ((mask_ & (observe_force | observe_acceleration)) == 0U) { return; }
-        const T v = jet_.velocity();
-        T shift{};
-        if (on_surface) {
-            shift = time_shift(v);
-        } else {
-            const Base slope = numerics::base(jet_.stop_stiffness()) * numerics::base(v) +
-                               numerics::base(jet_.stop_damping()) * numerics::base(end_acceleration_);
-            shift = lanes_only(force()) * (Base(-1) / slope);
-        }
+        const T shift = event_shift(on_surface);
         if ((mask_ & observe_force) != 0U) {
             if (on_surface) {
                 const T overlap = displacement_lanes();
                 impulse_ -= jet_.stop_damping() * overlap;
-                work_ -= jet_.stop_damping() * v * overlap;
+                work_ -= jet_.stop_damping() * jet_.velocity() * overlap;
             }
             contact_time_ += (T(theta) + shift * jet_.omega()) * jet_.inverse_omega();
         }
@@ -168,7 +166,14 @@ private:
                jet_.stop_damping() * jet_.velocity();
     }
     [[nodiscard]] T displacement_lanes() const { return lanes_only(jet_.position() - jet_.stop_position()); }
-    [[nodiscard]] T time_shift(const T& v) const { return displacement_lanes() * (Base(-1) / numerics::base(v)); }
+    /// d(tau of the event), value zero: displacement or force, held at zero, over its rate just before the event.
+    [[nodiscard]] T event_shift(bool on_surface) const {
+        const Base& v = numerics::base(jet_.velocity());
+        if (on_surface) { return displacement_lanes() * (Base(-1) / v); }
+        const Base slope = numerics::base(jet_.stop_stiffness()) * v +
+                           numerics::base(jet_.stop_damping()) * numerics::base(end_acceleration_);
+        return lanes_only(force()) * (Base(-1) / slope);
+    }
 
     void open_contact(const Base& theta, bool open) {
         ContactRecord record;
@@ -208,6 +213,7 @@ private:
     template <class Coefficients, class Visit>
     void visit_extrema(const Coefficients& c, int degree, int sign, Visit visit) const {
         double derivative[numerics::max_degree + 1];
+        derivative[0] = 0.0;  // the compiler cannot see that degree > 0
         double power = 1.0;
         for (int j = 1; j <= degree; ++j) {
             derivative[j - 1] = j * static_cast<double>(numerics::base(c[j])) * power;
@@ -255,6 +261,7 @@ private:
     template <class Coefficients>
     void maximise(const Coefficients& c, int degree, Extremum& best, bool from_start) {
         if (from_start) { best.raise(c[0], theta_); }
+        if (last_) { best.raise(evaluate(c, degree, h_), theta_ + h_); }
         if (!may_exceed(c, degree, best)) { return; }
         visit_extrema(c, degree, -1, [&](const Base& t) { best.raise(evaluate(c, degree, t), theta_ + t); });
     }
@@ -277,13 +284,15 @@ private:
         }
         maximise(scratch_, order_, contact_peak_, first_);
         T impulse(0.0);
+        for (int n = order_; n >= 0; --n) { impulse = impulse * h_ + scratch_[n] * (Base(1) / static_cast<Base>(n + 1)); }
+        // The product is carried to its full degree: cut at the order of its factors it would be much less exact.
         T work(0.0);
-        for (int n = order_; n >= 0; --n) {
+        for (int n = 2 * order_; n >= 0; --n) {
             T product(0.0);
-            for (int j = 0; j <= n; ++j) { product += scratch_[j] * jet_.v()[n - j]; }
-            const Base weight = Base(1) / static_cast<Base>(n + 1);
-            impulse = impulse * h_ + scratch_[n] * weight;
-            work = work * h_ + product * weight;
+            for (int j = std::max(0, n - order_); j <= std::min(n, order_); ++j) {
+                product += scratch_[j] * jet_.v()[n - j];
+            }
+            work = work * h_ + product * (Base(1) / static_cast<Base>(n + 1));
         }
         impulse_ += impulse * h_ * jet_.inverse_omega();
         work_ += work * h_ * jet_.inverse_omega();
@@ -370,6 +379,7 @@ private:
     Base h_{};
     Base theta_{};
     bool first_ = true;
+    bool last_ = false;
     bool pending_ = false;
     bool contact_open_since_start_ = false;
     Base open_from_{};

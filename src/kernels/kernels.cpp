@@ -59,10 +59,8 @@ public:
         Scene scene = Scene::spring_mass;
         if (kind == model::ActuatorKind::dielectric_elastomer) {
             scene = viscous ? Scene::membranes : Scene::elastic_membranes;
-            if (!viscous) { info_.states = 2; }
         }
         kernels_ = &(*choose_set(options.instruction_set).table)[static_cast<std::size_t>(scene)];
-        info_.releases_on_force = law == model::StopLaw::no_tension;
         settings_.law = static_cast<std::uint8_t>(law);
         settings_.order = flow::taylor_order(options.tolerance);
     }
@@ -123,8 +121,8 @@ std::unique_ptr<flow::Integrator> make_integrator(model::ActuatorKind kind, mode
                                     ": allowed is 1e-16 to 1e-2");
     }
     if (options.integrator == "taylor") { return std::make_unique<TaylorIntegrator>(kind, law, viscous, options); }
-    if (options.integrator == "erk") { return flow::make_erk(make_plain_system(kind, law), options.tolerance); }
-    if (options.integrator == "cvode") { return flow::make_cvode(make_plain_system(kind, law), options.tolerance); }
+    if (options.integrator == "erk") { return flow::make_erk(make_plain_system(kind, law, viscous), options.tolerance); }
+    if (options.integrator == "cvode") { return flow::make_cvode(make_plain_system(kind, law, viscous), options.tolerance); }
     throw std::invalid_argument("solver.integrator = " + options.integrator + ": allowed are taylor, erk, cvode");
 }
 

@@ -121,7 +121,8 @@ void kernel(const flow::ParameterVector& parameters, const TaylorSettings& setti
             const double duration = std::abs(request.duration);
             const T force = jet.stop_stiffness() * run.divided_gap() * request.duration + jet.stop_damping() * y[1];
             result.divided_gap = sensitive(run.divided_gap());
-            result.divided_force = sensitive(force / (jet.stop_stiffness() * duration + jet.stop_damping()));
+            const T scale = jet.stop_stiffness() * duration + jet.stop_damping();
+            if (numerics::base(scale) > 0.0) { result.divided_force = sensitive(force / scale); }
         }
     }
     report_contacts<Jet>(run.observer(), result);

@@ -51,7 +51,10 @@ bool ArclengthWalker::start(const SmallVector& u, double direction) {
     return false;
 }
 
-void ArclengthWalker::predict() { predicted_ = u_ + step_ * tangent_; }
+void ArclengthWalker::predict() {
+    const double along = std::abs(tangent_[tangent_.size() - 1]);
+    if (step_ * along > options_.largest_parameter_step) { step_ = options_.largest_parameter_step / along; }
+    predicted_ = u_ + step_ * tangent_; }
 
 ArclengthWalker::Correction ArclengthWalker::correct() {
     candidate_ = predicted_;

@@ -16,6 +16,7 @@ struct ArclengthOptions {
     double first_step = 0.05;
     double smallest_step = 1e-10;
     double largest_step = 0.3;
+    double largest_parameter_step = 1e300;  ///< of the last entry of u alone
     double target_angle = 0.12;       ///< between consecutive tangents, rad (about 7 degrees)
     double largest_angle = 0.35;      ///< beyond this the step is repeated with half the length
     double largest_correction = 0.3;  ///< the corrector may move this share of the step: more means another branch

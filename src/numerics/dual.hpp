@@ -36,7 +36,7 @@ struct Register {
 
 /// N doubles worked on together.
 template <int N>
-struct Vector {
+struct LaneVector {
     static constexpr int width = N < register_lanes ? N : register_lanes;
     static constexpr int parts = N / width;
     using Part = typename Register<width>::type;
@@ -45,39 +45,39 @@ struct Vector {
     PERCUSS_INLINE double operator[](std::size_t i) const { return part[i / width][i % width]; }
     PERCUSS_INLINE void set(std::size_t i, double value) { part[i / width][i % width] = value; }
 
-    PERCUSS_INLINE Vector& operator+=(const Vector& o) {
+    PERCUSS_INLINE LaneVector& operator+=(const LaneVector& o) {
         for (int i = 0; i < parts; ++i) { part[i] += o.part[i]; }
         return *this;
     }
-    PERCUSS_INLINE Vector& operator-=(const Vector& o) {
+    PERCUSS_INLINE LaneVector& operator-=(const LaneVector& o) {
         for (int i = 0; i < parts; ++i) { part[i] -= o.part[i]; }
         return *this;
     }
     /// this += o s
-    PERCUSS_INLINE void add_scaled(const Vector& o, double s) {
+    PERCUSS_INLINE void add_scaled(const LaneVector& o, double s) {
         for (int i = 0; i < parts; ++i) { part[i] += o.part[i] * s; }
     }
-    friend PERCUSS_INLINE Vector operator+(Vector a, const Vector& b) { return a += b; }
-    friend PERCUSS_INLINE Vector operator-(Vector a, const Vector& b) { return a -= b; }
-    friend PERCUSS_INLINE Vector operator-(Vector a) {
+    friend PERCUSS_INLINE LaneVector operator+(LaneVector a, const LaneVector& b) { return a += b; }
+    friend PERCUSS_INLINE LaneVector operator-(LaneVector a, const LaneVector& b) { return a -= b; }
+    friend PERCUSS_INLINE LaneVector operator-(LaneVector a) {
         for (int i = 0; i < parts; ++i) { a.part[i] = -a.part[i]; }
         return a;
     }
-    friend PERCUSS_INLINE Vector operator*(Vector a, double s) {
+    friend PERCUSS_INLINE LaneVector operator*(LaneVector a, double s) {
         for (int i = 0; i < parts; ++i) { a.part[i] *= s; }
         return a;
     }
-    friend PERCUSS_INLINE Vector operator*(double s, const Vector& a) { return a * s; }
+    friend PERCUSS_INLINE LaneVector operator*(double s, const LaneVector& a) { return a * s; }
 };
 
 /// value + N directional derivatives. Arithmetic is the chain rule.
 template <int N>
 struct Dual {
     double v;
-    Vector<N> d;
+    LaneVector<N> d;
     Dual() = default;
     PERCUSS_INLINE Dual(double value) : v(value), d{} {}  // a constant: implicit on purpose
-    PERCUSS_INLINE Dual(double value, Vector<N> derivative) : v(value), d(derivative) {}
+    PERCUSS_INLINE Dual(double value, LaneVector<N> derivative) : v(value), d(derivative) {}
 
     PERCUSS_INLINE Dual& operator+=(const Dual& o) { return v += o.v, d += o.d, *this; }
     PERCUSS_INLINE Dual& operator-=(const Dual& o) { return v -= o.v, d -= o.d, *this; }
@@ -185,9 +185,9 @@ struct Pair<double> {
 template <int N>
 struct Pair<Dual<N>> {
     TwoLanes v;
-    Vector<N> d0, d1;
+    LaneVector<N> d0, d1;
     Pair() = default;
-    PERCUSS_INLINE Pair(TwoLanes value, Vector<N> first, Vector<N> second) : v(value), d0(first), d1(second) {}
+    PERCUSS_INLINE Pair(TwoLanes value, LaneVector<N> first, LaneVector<N> second) : v(value), d0(first), d1(second) {}
     PERCUSS_INLINE Pair(const Dual<N>& first, const Dual<N>& second)
         : v{first.v, second.v},
           d0(first.d),
@@ -255,8 +255,8 @@ public:
     /// A value without derivatives.
     PERCUSS_INLINE void set(int i, const Pair<double>& value) {
         v_[i] = value.v;
-        d_[2 * i] = Vector<L>{};
-        d_[2 * i + 1] = Vector<L>{};
+        d_[2 * i] = LaneVector<L>{};
+        d_[2 * i + 1] = LaneVector<L>{};
     }
     PERCUSS_INLINE void set(int i, const Pair<Dual<L>>& value) {
         v_[i] = value.v;
@@ -266,7 +266,7 @@ public:
 
 private:
     TwoLanes v_[N];
-    Vector<L> d_[2 * N];
+    LaneVector<L> d_[2 * N];
 };
 
 }  // namespace PERCUSS_ISA
