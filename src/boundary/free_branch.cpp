@@ -18,8 +18,8 @@ orbit::ReturnMap FreeBranch::half_cycle() {
     return map;
 }
 
-/// What counts as one unit of displacement; speeds follow at resonance. Without this a resonance peak is a ripple in the
-/// norm that steps are measured in, and a step can leap over it.
+/// What counts as one unit of displacement; speeds follow at resonance. Without this a resonance peak is a ripple in
+/// the norm that steps are measured in, and a step can leap over it.
 void FreeBranch::set_measure(double size) {
     measure_.fill(size);
     measure_[1] = size * scale_;
@@ -82,7 +82,7 @@ FreePoint FreeBranch::describe() const {
     point.omega_slope = t[n];
     const orbit::Observed c = clearance(system_.at_omega(image_omega_), half_cycle(), image_, {});
     point.clearance = c.value;
-    for (int k = 0; k < n; ++k) { 
+    for (int k = 0; k < n; ++k) {
         point.clearance_slope += c.d[static_cast<std::size_t>(k)] * t[k] * measure_[static_cast<std::size_t>(k)];
     }
     point.clearance_slope += c.d[static_cast<std::size_t>(n)] * scale_ * t[n];
@@ -106,8 +106,8 @@ bool FreeBranch::start(double omega) {
     if (settled) { guess = *settled; }
     const orbit::Orbit orbit = orbit::find_orbit(there, half_cycle(), guess);
     if (!orbit.ok()) { return false; }
-    // The response well above resonance, times the ratio of stiffness forces, is about the static one: peaks are told by
-    // that, or by the gap where it is smaller.
+    // The response well above resonance, times the ratio of stiffness forces, is about the static one: peaks are told
+    // by that, or by the gap where it is smaller.
     const orbit::Image image =
         orbit::apply(there, half_cycle(), orbit.state, orbit::Differentiate::nothing, {}, flow::observe_extrema);
     if (!image.ok()) { return false; }

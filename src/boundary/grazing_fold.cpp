@@ -33,8 +33,8 @@ orbit::ContactSequence rescaled(orbit::ContactSequence sequence, double speed) {
     return sequence;
 }
 
-/// Goes up in v until the slope changes sign: by linear extrapolation from the last two probes, but at least doubling and
-/// at most thirtyfold. False when there is no fold within reach (or trouble); `fold` then says which.
+/// Goes up in v until the slope changes sign: by linear extrapolation from the last two probes, but at least doubling
+/// and at most thirtyfold. False when there is no fold within reach (or trouble); `fold` then says which.
 bool bracket_fold(const flow::System& system, const Boundary& grazing, GrazingFold& fold, Probe& low, Probe& high) {
     double factor = 4.0;
     while (true) {

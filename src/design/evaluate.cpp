@@ -159,6 +159,7 @@ public:
             reached = from_start(from_user(*start, scaled_.scales, system_.states()), period);
         } else {
             reached = from_rest(period);
+            if (reached.orbit.ok()) { reached.orbit = start_with_longest_flight(system_, reached.orbit); }
         }
         accept(reached);
         return finish();
@@ -399,8 +400,7 @@ const Problem& Evaluator::problem() const { return implementation_->problem; }
 
 Evaluation Evaluator::evaluate(const Specification& actuator, const Demand& demand) const {
     model::validate(actuator);
-    return Run(implementation_->problem, implementation_->integrators(), actuator, demand)
-        .evaluate();
+    return Run(implementation_->problem, implementation_->integrators(), actuator, demand).evaluate();
 }
 
 Evaluation Evaluator::evaluate(const Demand& demand) const {
@@ -410,8 +410,7 @@ Evaluation Evaluator::evaluate(const Demand& demand) const {
 Evaluation Evaluator::orbit(const Specification& actuator, const std::optional<std::vector<double>>& start, int period,
                             const Demand& demand) const {
     model::validate(actuator);
-    return Run(implementation_->problem, implementation_->integrators(), actuator, demand)
-        .orbit(start, period);
+    return Run(implementation_->problem, implementation_->integrators(), actuator, demand).orbit(start, period);
 }
 
 }  // namespace percuss::design

@@ -84,6 +84,18 @@ public:
     }
     [[nodiscard]] double value() const { return std::abs(mu_); }
 
+    /// w^T (M' - M) v with M' the tighter integrator's matrix at the same state, and what rounding does to the product.
+    [[nodiscard]] double error(const flow::System& tighter) const {
+        orbit::ReturnMap map = orbit_.map;
+        map.precise = true;
+        const orbit::Image image = orbit::apply(tighter, map, orbit_.state, orbit::Differentiate::state);
+        if (!image.ok()) { return absent; }
+        const Eigen::MatrixXd difference = Eigen::MatrixXd(image.derivative) - Eigen::MatrixXd(portrait_.monodromy);
+        const double moved = std::abs((left_.transpose() * difference * right_)(0));
+        const double rounding = 1e-15 * portrait_.monodromy.norm() * left_.norm() * right_.norm();
+        return moved + rounding;
+    }
+
     [[nodiscard]] double along(const flow::ParameterVector& direction, int column) const {
         double size = portrait_.d_state.col(column).norm();
         for (std::size_t k = 0; k < direction.size(); ++k) {
@@ -106,7 +118,9 @@ private:
         for (std::size_t k = 0; k < direction.size(); ++k) { moved.parameters[k] += h * direction[k]; }
         flow::State y = orbit_.state;
         for (int k = 0; k < system_.states(); ++k) { y[index(k)] += h * portrait_.d_state(k, column); }
-        const orbit::Image image = orbit::apply(moved, orbit_.map, y, orbit::Differentiate::state);
+        orbit::ReturnMap map = orbit_.map;
+        map.precise = true;
+        const orbit::Image image = orbit::apply(moved, map, y, orbit::Differentiate::state);
         if (!image.ok()) { return false; }
         m = image.derivative;
         return true;
@@ -127,6 +141,7 @@ struct Context {
     const orbit::Orbit& orbit;
     const Portrait& portrait;
     const orbit::ErrorEstimate& errors;
+    const flow::System* tighter;
     bool with_errors;
     double omega_error;
     int omega_column;  ///< column of the pure frequency direction
@@ -187,9 +202,7 @@ void measure_frequency(const Context& c) {
 
 void measure_multiplier(const Context& c) {
     const MultiplierGradient multiplier(c.system, c.orbit, c.portrait);
-    // An eigenvalue moves by about the error of the matrix, which is that of the state times the matrix' own scale.
-    const double error = c.with_errors ? 10.0 * c.errors.state * (1.0 + c.portrait.monodromy.norm()) : absent;
-    c.set(Quantity::max_multiplier, multiplier.value(), error);
+    c.set(Quantity::max_multiplier, multiplier.value(), c.with_errors ? multiplier.error(*c.tighter) : absent);
     auto& gradient = c.gradient(Quantity::max_multiplier);
     for (std::size_t i = 0; i < c.keys.size(); ++i) {
         gradient[i] = multiplier.along(c.keys[i].parameters, static_cast<int>(i));
@@ -221,15 +234,8 @@ Measurement measure(const flow::System& system, const flow::System* tighter, con
     orbit::ErrorEstimate errors;
     if (with_errors) { errors = orbit::estimate_errors(*tighter, orbit, measurement.portrait, mask); }
     evaluation.orbit.state_error = with_errors ? errors.state : absent;
-    const Context context{system,
-                          scales,
-                          keys,
-                          orbit,
-                          measurement.portrait,
-                          errors,
-                          with_errors,
-                          omega_error,
-                          static_cast<int>(keys.size()),
+    const Context context{system,    scales,  keys,        orbit,       measurement.portrait,
+                          errors,    tighter, with_errors, omega_error, static_cast<int>(keys.size()),
                           evaluation};
     for (Quantity q : demand.quantities) {
         if (const Proportional* rule = proportional(q)) {

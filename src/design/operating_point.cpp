@@ -152,6 +152,35 @@ flow::State state_at_zero(const flow::System& system, const Orbit& orbit) {
     return result.state;
 }
 
+Orbit start_with_longest_flight(const flow::System& system, const Orbit& orbit) {
+    const int n = orbit.map.period;
+    if (n == 1 || orbit.contacts.empty()) { return orbit; }
+    const double whole = 2.0 * pi * n;
+    int best = 0;
+    double longest = -1.0;
+    for (int cycle = 0; cycle < n; ++cycle) {
+        double first = whole;
+        for (const flow::Contact& contact : orbit.contacts) {
+            const double after = std::fmod(contact.theta_in - orbit.map.phase - 2.0 * pi * cycle + whole, whole);
+            first = std::min(first, after);
+        }
+        if (first > longest + 1e-9) {
+            longest = first;
+            best = cycle;
+        }
+    }
+    if (best == 0) { return orbit; }
+    flow::Request request;
+    request.state = orbit.state;
+    request.theta = orbit.map.phase;
+    request.duration = 2.0 * pi * best;
+    flow::Result result;
+    system.run(request, result);
+    if (result.status != flow::Status::ok) { return orbit; }
+    Orbit moved = orbit::find_orbit(system, orbit.map, result.state);
+    return moved.ok() ? moved : orbit;
+}
+
 int minimal_period(const flow::System& system, const Orbit& orbit) {
     const int n = orbit.map.period;
     for (int divisor = 1; divisor < n; ++divisor) {

@@ -39,6 +39,10 @@ orbit::Orbit polish_orbit(const flow::System& system, const flow::State& from, i
 /// State of the orbit at phase 0.
 flow::State state_at_zero(const flow::System& system, const orbit::Orbit& orbit);
 
+/// The same orbit of several drive cycles, starting with the cycle that is followed by the longest flight: one of its
+/// strobe points, chosen the same way every time. Unchanged without contacts or for one cycle.
+orbit::Orbit start_with_longest_flight(const flow::System& system, const orbit::Orbit& orbit);
+
 /// Number of drive cycles after which the orbit really repeats: a divisor of its map's period.
 int minimal_period(const flow::System& system, const orbit::Orbit& orbit);
 
@@ -58,7 +62,7 @@ struct EdgeOperation {
 struct OperationOptions {
     double margin = 0.01;
     const flow::System* scout = nullptr;  ///< same system with a looser integrator, to follow the free branch with
-    bool check_neighbours = true;  ///< fold beside the edge, free orbits at the operating frequency
+    bool check_neighbours = true;         ///< fold beside the edge, free orbits at the operating frequency
     std::span<const flow::ParameterVector> directions{};
 };
 

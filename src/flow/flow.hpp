@@ -103,6 +103,7 @@ struct Request {
     std::span<const Direction> directions{};  ///< at most max_lanes
     std::uint32_t observe = observe_nothing;
     bool starts_in_contact = false;  ///< hybrid only: the start lies on the surface and has just entered
+    bool full_derivatives = false;   ///< derivative series to the full order (see taylor.hpp): for final answers
     int max_events = 128;
     long max_steps = 200000;
 };

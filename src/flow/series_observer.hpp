@@ -67,8 +67,8 @@ public:
         theta_ += h;
     }
 
-    /// Start of contact: entry on the surface, or (no-tension law) the force coming back inside the stop. Lanes still at
-    /// fixed time.
+    /// Start of contact: entry on the surface, or (no-tension law) the force coming back inside the stop. Lanes still
+    /// at fixed time.
     void enter(const Base& theta, bool on_surface) {
         open_contact(theta, false);
         if ((mask_ & (observe_force | observe_acceleration)) == 0U) { return; }
@@ -162,8 +162,7 @@ private:
     }
     /// Of the stop, at the expansion point.
     [[nodiscard]] T force() const {
-        return jet_.stop_stiffness() * (jet_.position() - jet_.stop_position()) +
-               jet_.stop_damping() * jet_.velocity();
+        return jet_.stop_stiffness() * (jet_.position() - jet_.stop_position()) + jet_.stop_damping() * jet_.velocity();
     }
     [[nodiscard]] T displacement_lanes() const { return lanes_only(jet_.position() - jet_.stop_position()); }
     /// d(tau of the event), value zero: displacement or force, held at zero, over its rate just before the event.
@@ -284,7 +283,9 @@ private:
         }
         maximise(scratch_, order_, contact_peak_, first_);
         T impulse(0.0);
-        for (int n = order_; n >= 0; --n) { impulse = impulse * h_ + scratch_[n] * (Base(1) / static_cast<Base>(n + 1)); }
+        for (int n = order_; n >= 0; --n) {
+            impulse = impulse * h_ + scratch_[n] * (Base(1) / static_cast<Base>(n + 1));
+        }
         // The product is carried to its full degree: cut at the order of its factors it would be much less exact.
         T work(0.0);
         for (int n = 2 * order_; n >= 0; --n) {

@@ -43,13 +43,16 @@ public:
         : jet_(parameters),
           law_(law),
           order_(std::min(order, Jet::max_order)),
-          derivative_order_(lanes > 0 ? std::max(4, order_ - derivative_orders_saved) : order_),
+          derivative_order_(order_),
           safety_(std::exp(-2.0 - 0.7 / (order_ - 1))),
           observer_(jet_) {}
 
     /// Follows the flow from `start` at phase `theta` (whose derivative part, if any, shifts the drive) for `duration`.
     Status run(const JetState& start, const T& theta, const Base& duration, const Request& request) {
         request_ = &request;
+        if (lanes > 0 && !request.full_derivatives) {
+            derivative_order_ = std::max(4, order_ - derivative_orders_saved);
+        }
         theta_ = theta;
         elapsed_ = 0;
         duration_ = duration;

@@ -121,8 +121,12 @@ std::unique_ptr<flow::Integrator> make_integrator(model::ActuatorKind kind, mode
                                     ": allowed is 1e-16 to 1e-2");
     }
     if (options.integrator == "taylor") { return std::make_unique<TaylorIntegrator>(kind, law, viscous, options); }
-    if (options.integrator == "erk") { return flow::make_erk(make_plain_system(kind, law, viscous), options.tolerance); }
-    if (options.integrator == "cvode") { return flow::make_cvode(make_plain_system(kind, law, viscous), options.tolerance); }
+    if (options.integrator == "erk") {
+        return flow::make_erk(make_plain_system(kind, law, viscous), options.tolerance);
+    }
+    if (options.integrator == "cvode") {
+        return flow::make_cvode(make_plain_system(kind, law, viscous), options.tolerance);
+    }
     throw std::invalid_argument("solver.integrator = " + options.integrator + ": allowed are taylor, erk, cvode");
 }
 

@@ -253,8 +253,8 @@ private:
         return Pair<S>(mean * (even - 2.0 * c1), mean * (even + 2.0 * c1));
     }
 
-    /// From coefficients 0..n of x, v, L (and the internal series) to coefficient n + 1, in S: the scalar T, or its base
-    /// type where the derivative parts are left out.
+    /// From coefficients 0..n of x, v, L (and the internal series) to coefficient n + 1, in S: the scalar T, or its
+    /// base type where the derivative parts are left out.
     template <class S>
     void extend(int n, bool touching) {
         const Base reciprocal = Base(1) / static_cast<Base>(n + 1);

@@ -54,7 +54,8 @@ bool ArclengthWalker::start(const SmallVector& u, double direction) {
 void ArclengthWalker::predict() {
     const double along = std::abs(tangent_[tangent_.size() - 1]);
     if (step_ * along > options_.largest_parameter_step) { step_ = options_.largest_parameter_step / along; }
-    predicted_ = u_ + step_ * tangent_; }
+    predicted_ = u_ + step_ * tangent_;
+}
 
 ArclengthWalker::Correction ArclengthWalker::correct() {
     candidate_ = predicted_;

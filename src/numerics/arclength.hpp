@@ -17,8 +17,8 @@ struct ArclengthOptions {
     double smallest_step = 1e-10;
     double largest_step = 0.3;
     double largest_parameter_step = 1e300;  ///< of the last entry of u alone
-    double target_angle = 0.12;       ///< between consecutive tangents, rad (about 7 degrees)
-    double largest_angle = 0.35;      ///< beyond this the step is repeated with half the length
+    double target_angle = 0.12;             ///< between consecutive tangents, rad (about 7 degrees)
+    double largest_angle = 0.35;            ///< beyond this the step is repeated with half the length
     double largest_correction = 0.3;  ///< the corrector may move this share of the step: more means another branch
     double tolerance = 1e-10;         ///< on |F|, relative to 1 + |u|
     int newton_iterations = 8;

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <type_traits>
-#include <cstddef>
 
 #ifndef PERCUSS_ISA
 #define PERCUSS_ISA generic

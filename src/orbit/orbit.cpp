@@ -149,7 +149,9 @@ Portrait portray(const flow::System& system, const Orbit& orbit, std::span<const
                  std::uint32_t observe) {
     Portrait portrait;
     const int n = system.states();
-    portrait.image = apply(system, orbit.map, orbit.state, Differentiate::all, directions, observe);
+    ReturnMap map = orbit.map;
+    map.precise = true;
+    portrait.image = apply(system, map, orbit.state, Differentiate::all, directions, observe);
     portrait.status = portrait.image.status;
     if (!portrait.ok()) { return portrait; }
     portrait.monodromy = portrait.image.derivative.leftCols(n);

@@ -71,6 +71,7 @@ Image apply(const flow::System& system, const ReturnMap& map, const flow::State&
     request.duration = map.duration();
     request.stop = map.stop;
     request.observe = observe;
+    request.full_derivatives = map.precise;
     request.max_events = 256 * std::max(1, map.period);
     flow::Result result;
     for (int first = 0; first == 0 || first < columns; first += flow::max_lanes) {

@@ -20,6 +20,7 @@ struct ReturnMap {
     flow::StopMode stop = flow::StopMode::hybrid;
     double phase = 0.0;     ///< strobe phase theta
     int period = 1;         ///< drive cycles; ignored when mirrored
+    bool precise = false;   ///< derivatives to full accuracy rather than what Newton's method needs
     bool mirrored = false;  ///< half a drive cycle, then the mirror image (free system only)
     [[nodiscard]] double duration() const;
 };
