@@ -53,7 +53,7 @@ const Set& choose_set(std::string_view requested) {
 class TaylorIntegrator final : public flow::Integrator {
 public:
     TaylorIntegrator(model::ActuatorKind kind, model::StopLaw law, bool viscous, const IntegratorOptions& options)
-        : plain_(make_plain_system(kind, law)),
+        : plain_(make_plain_system(kind, law, viscous)),
           info_(plain_->info()),
           tolerance_(options.tolerance) {
         Scene scene = Scene::spring_mass;
