@@ -36,8 +36,8 @@ inline constexpr flow::State paper_orbit = {0.28441053480900, -0.04807487486239,
 inline constexpr double clear_omega = 3.0;
 inline constexpr flow::State clear_orbit = {0.41090395464036, -0.00136890359622, 1.18476545344551, 1.18475676192469};
 
-/// x'' + 0.02 x' + x + 29 max(x - 1, 0) = 0.152380952381 cos(1.05 theta/omega): demonstration "bld_osc" of
-/// PWSDDE-cont without control. c k1 k3 F gap k delta_i omega
+/// x'' + 0.02 x' + x + 29 max(x - 1, 0) = 0.152380952381 cos(1.05 tau): demonstration "bld_osc" of PWSDDE-cont without
+/// control. c k1 k3 F gap k delta_i omega
 inline constexpr flow::ParameterVector soft_impact = {0.02, 1.0, 0.0, 0.152380952381, 1.0, 29.0, 0.0, 1.05};
 
 inline flow::ParameterVector with(flow::ParameterVector p, int index, double value) {

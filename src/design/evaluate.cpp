@@ -13,7 +13,6 @@
 namespace percuss::design {
 namespace {
 
-using model::Family;
 using model::Key;
 using model::Specification;
 using std::numbers::pi;

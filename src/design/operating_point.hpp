@@ -47,7 +47,7 @@ orbit::Orbit start_with_longest_flight(const flow::System& system, const orbit::
 int minimal_period(const flow::System& system, const orbit::Orbit& orbit);
 
 /// The orbit continued from one frequency to another by Newton, steps halved on failure. Nothing when it is lost.
-std::optional<orbit::Orbit> continue_orbit(const flow::System& system, const orbit::Orbit& orbit, double to_omega);
+std::optional<orbit::Orbit> continue_orbit(const flow::System& system, const orbit::Orbit& start, double to_omega);
 
 /// The edge of a design, the frequency (1 - margin) below it, and what stands there.
 struct EdgeOperation {

@@ -28,10 +28,16 @@ const std::vector<Set>& available_sets() {
         found.push_back({"v2", &taylor_table_v2()});
 #endif
 #ifdef PERCUSS_HAVE_V3
-        if (__builtin_cpu_supports("x86-64-v3")) { found.push_back({"v3", &taylor_table_v3()}); }
+        if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) {
+            found.push_back({"v3", &taylor_table_v3()});
+        }
 #endif
 #ifdef PERCUSS_HAVE_V4
-        if (__builtin_cpu_supports("x86-64-v4")) { found.push_back({"v4", &taylor_table_v4()}); }
+        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+            __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+            __builtin_cpu_supports("avx512vl")) {
+            found.push_back({"v4", &taylor_table_v4()});
+        }
 #endif
         return found;
     }();
