@@ -386,7 +386,7 @@ TEST_CASE("what cannot be found is said") {
     CHECK(orbit::find_orbit(system, {}, guess).status == orbit::OrbitStatus::flow_failed);
     CHECK(Orbit{}.status == orbit::OrbitStatus::not_run);
     CHECK_FALSE(orbit::settle(system, guess, 3).has_value());
-    const std::vector<ParameterVector> many(17);
+    const std::vector<ParameterVector> many(orbit::max_directions + 1);
     CHECK_THROWS_AS(orbit::apply(system, {}, test::reference_orbits[0].state, orbit::Differentiate::all, many),
                     std::invalid_argument);
 }

@@ -1,5 +1,7 @@
 #include "boundary/grazing_fold.hpp"
 
+#include "numerics/arclength.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -33,6 +35,58 @@ orbit::ContactSequence rescaled(orbit::ContactSequence sequence, double speed) {
     return sequence;
 }
 
+/// The impacting branch as a curve in (v, theta, t_c, q..., omega/omega_grazing), for stops so soft that v itself turns
+/// back before the frequency does. Sets `fold`: found (to the accuracy of a Hermite cubic between two points), none
+/// within reach, or failed.
+void follow_by_arclength(const flow::System& system, const Boundary& grazing, const Probe& from, GrazingFold& fold) {
+    const int n = system.states() + 1;
+    const double unit = grazing.omega;
+    const flow::ParameterVector by_omega = orbit::unit_direction(system.integrator->info().omega);
+    const auto equations = [&](const numerics::SmallVector& u, numerics::SmallVector& f, numerics::SmallMatrix& j) {
+        if (!(u[n] > 0.0)) { return false; }
+        const auto sequence = orbit::unpack(system, u.head(n), 1);
+        const auto r = orbit::evaluate(system.at_omega(u[n] * unit), sequence, {&by_omega, 1});
+        if (!r) { return false; }
+        f = r->value;
+        j.resize(n, n + 1);
+        j.leftCols(n) = r->by_unknowns;
+        j.col(n) = r->by_directions.col(0) * unit;
+        return true;
+    };
+    numerics::ArclengthWalker walker(equations, {.first_step = 0.01, .largest_step = 0.2, .target_angle = 0.2});
+    numerics::SmallVector u(n + 1);
+    u.head(n) = orbit::pack(system, from.solution.sequence);
+    u[n] = from.solution.omega / unit;
+    if (!walker.start(u, -1.0)) { return; }
+    for (int step = 0; step < 200; ++step) {
+        const numerics::SmallVector before = walker.point();
+        const double slope_before = walker.tangent()[n];
+        if (!walker.advance()) { return; }
+        const double slope = walker.tangent()[n];
+        if (slope >= 0.0) {
+            // omega along the step: s in [0, 1], slopes per step length
+            const double length = (walker.point() - before).norm();
+            const double s = slope_before / (slope_before - slope);
+            const double h00 = (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s);
+            const double h10 = s * (1.0 - s) * (1.0 - s);
+            const double h01 = s * s * (3.0 - 2.0 * s);
+            const double h11 = s * s * (s - 1.0);
+            const double lowest =
+                h00 * before[n] + h10 * length * slope_before + h01 * walker.point()[n] + h11 * length * slope;
+            fold.status = GrazingFold::Status::found;
+            fold.omega = lowest * unit;
+            fold.offset = 1.0 - lowest;
+            fold.speed = before[0] + s * (walker.point()[0] - before[0]);
+            fold.sequence = orbit::unpack(system, walker.point().head(n), 1);
+            return;
+        }
+        if (1.0 - walker.point()[n] > fold.reach || walker.point()[0] <= 0.0) {
+            fold.status = GrazingFold::Status::none;
+            return;
+        }
+    }
+}
+
 /// Goes up in v until the slope changes sign: by linear extrapolation from the last two probes, but at least doubling
 /// and at most thirtyfold. False when there is no fold within reach (or trouble); `fold` then says which.
 bool bracket_fold(const flow::System& system, const Boundary& grazing, GrazingFold& fold, Probe& low, Probe& high) {
@@ -42,7 +96,10 @@ bool bracket_fold(const flow::System& system, const Boundary& grazing, GrazingFo
         high = probe(system, rescaled(low.solution.sequence, speed), low.solution.omega, speed);
         if (!high.ok) {
             factor = std::sqrt(factor);
-            if (factor < 1.01) { return false; }
+            if (factor < 1.1) {
+                follow_by_arclength(system, grazing, low, fold);
+                return false;
+            }
             continue;
         }
         if (high.value > 0.0) { return true; }

@@ -32,6 +32,13 @@ double flight_duration(const ContactSequence& sequence, std::size_t i) {
     return next - here.phase - here.duration;
 }
 
+/// A wild Newton step must not send the integrator off for thousands of cycles: contact and flight fit in one period.
+bool plausible(const ContactSequence& sequence, std::size_t i) {
+    const double whole = 2.0 * pi * sequence.period;
+    const double flight = flight_duration(sequence, i);
+    return std::abs(sequence.contacts[i].duration) < whole && flight > 0.0 && flight < 1.1 * whole;
+}
+
 /// One contact and the flight after it, with everything's derivatives placed in the big matrices.
 class Leg {
 public:
@@ -201,6 +208,7 @@ std::optional<SequenceResidual> evaluate(const flow::System& system, const Conta
     out.by_unknowns = Matrix::Zero(size, size);
     out.by_directions = Matrix::Zero(size, static_cast<int>(directions.size()));
     for (std::size_t i = 0; i < sequence.contacts.size(); ++i) {
+        if (!plausible(sequence, i)) { return std::nullopt; }
         Leg leg(system, sequence, i, directions);
         if (!leg.run()) { return std::nullopt; }
         leg.place(out);

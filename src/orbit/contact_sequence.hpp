@@ -38,7 +38,7 @@ numerics::Vector pack(const flow::System& system, const ContactSequence& sequenc
 ContactSequence unpack(const flow::System& system, const numerics::Vector& z, int period);
 
 /// Shooting equations: residual (as many as unknowns), derivatives with respect to the unknowns and to at most three
-/// parameter directions. Empty when the flow failed.
+/// parameter directions. Empty when the flow failed, or when a contact or flight does not fit into the period.
 struct SequenceResidual {
     numerics::Vector value;
     numerics::Matrix by_unknowns;

@@ -55,7 +55,7 @@ double ReturnMap::duration() const { return mirrored ? pi : 2.0 * pi * period; }
 
 Image apply(const flow::System& system, const ReturnMap& map, const flow::State& y, Differentiate differentiate,
             std::span<const flow::ParameterVector> directions, std::uint32_t observe) {
-    if (directions.size() > max_directions) { throw std::invalid_argument("return map: more than 16 directions"); }
+    if (directions.size() > max_directions) { throw std::invalid_argument("return map: more than 24 directions"); }
     if (map.mirrored && map.stop != flow::StopMode::off) {
         throw std::invalid_argument("return map: only the free system has the mirror symmetry");
     }

@@ -12,8 +12,8 @@
 
 namespace percuss::orbit {
 
-/// At most this many parameter directions in one call.
-inline constexpr int max_directions = 16;
+/// At most this many parameter directions in one call: all keys of an actuator, and the frequency.
+inline constexpr int max_directions = 24;
 inline constexpr int max_columns = flow::max_states + max_directions;
 
 struct ReturnMap {

@@ -95,6 +95,8 @@ optimise::Evaluation DesignNlp::translate(const design::Evaluation& evaluation, 
                                           bool with_gradient) const {
     optimise::Evaluation out;
     if (evaluation.status != design::EvaluationStatus::ok) { return out; }
+    const bool must_be_alone = problem().single_stable != design::SingleStable::off;
+    if (must_be_alone && evaluation.uniqueness.verdict != design::Verdict::unique) { return out; }
     const int n = variables();
     const int m = constraints();
     const design::Objective& objective = problem().objectives.front();

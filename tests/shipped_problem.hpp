@@ -1,0 +1,19 @@
+#pragma once
+/// \file
+/// The problem files that come with the program.
+
+#include "io/problem_file.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace percuss::test {
+
+inline study::StudyProblem shipped_problem(const std::string& name) {
+    const char* source = std::getenv("PERCUSS_SOURCE_DIR");
+    const std::filesystem::path root = source == nullptr ? "." : source;
+    return io::read_problem(root / "problems" / (name + ".ini"), {}).study;
+}
+
+}  // namespace percuss::test
