@@ -10,7 +10,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -28,9 +27,9 @@ namespace reference = test::edge_reference;
 
 namespace {
 
-using Changes = std::initializer_list<std::pair<Key, double>>;
+using Changes = std::vector<std::pair<Key, double>>;
 
-Specification changed(Specification spec, Changes changes) {
+Specification changed(Specification spec, const Changes& changes) {
     for (const auto& [key, value] : changes) { spec.set(key, value); }
     return spec;
 }
@@ -48,7 +47,7 @@ design::Problem nondimensional(double margin = 0.01) {
     return problem;
 }
 
-Evaluation evaluate(const design::Problem& problem, Changes changes = {}) {
+Evaluation evaluate(const design::Problem& problem, const Changes& changes = {}) {
     const design::Evaluator evaluator(problem);
     const Specification spec = changed(problem.actuator, changes);
     return evaluator.evaluate(spec, everything(spec));
@@ -99,23 +98,25 @@ TEST_CASE("at the edge of the defaults: frequency, force, amplitude and their gr
 
 TEST_CASE("the tables at the edge, to all digits given") {
     const design::Problem problem = nondimensional(0.0);
+    // One unit of the last digit given: where two integrators of this program agree to 1e-10, three entries of the
+    // tables are 0.5 to 0.7 units away.
     for (const auto& [gap, force] : reference::peak_force_vs_gap) {
         CAPTURE(gap);
         const Evaluation e = evaluate(problem, {{Key::nd_gap, gap}});
         CHECK(e.operating_point.edge_kind == EdgeKind::grazing);
-        CHECK(std::abs(e.value(Quantity::peak_force) - force) < 6e-6);
+        CHECK(std::abs(e.value(Quantity::peak_force) - force) < 1e-5);
     }
     for (const auto& [voltage, omega, force] : reference::vs_phi_pp) {
         CAPTURE(voltage);
         const Evaluation e = evaluate(problem, {{Key::nd_voltage, voltage}});
-        CHECK(std::abs(e.operating_point.edge_omega - omega) < 6e-7);
-        CHECK(std::abs(e.value(Quantity::peak_force) - force) < 6e-6);
+        CHECK(std::abs(e.operating_point.edge_omega - omega) < 1e-6);
+        CHECK(std::abs(e.value(Quantity::peak_force) - force) < 1e-5);
     }
     for (const auto& [stiffness, force] : reference::peak_force_vs_k) {
         CAPTURE(stiffness);
         const Evaluation e = evaluate(problem, {{Key::nd_stiffness, stiffness}});
         CHECK(std::abs(e.operating_point.edge_omega - reference::omega) < 6e-12);  // does not move with k
-        CHECK(std::abs(e.value(Quantity::peak_force) - force) < 6e-6);
+        CHECK(std::abs(e.value(Quantity::peak_force) - force) < 1e-5);
     }
     // Eight layers (the paper's figure 9): 12.169, more than twice the force of one.
     CHECK(std::abs(evaluate(problem, {{Key::nd_layers, 8.0}}).value(Quantity::peak_force) - 12.169) < 6e-4);
@@ -501,7 +502,7 @@ TEST_CASE("error estimates cover the true errors, for several designs and tolera
         {"stiff", "wu2022-nondimensional", {{Key::nd_stiffness, 25000.0}}},
         {"actuator", "wu2022-actuator", {}},
         {"soft actuator", "wu2022-actuator", {{Key::layers, 3.0}, {Key::stop_stiffness, 10e3}}},
-        {"spring", "soft-impact", {}}};
+        {"spring", "soft-impact", {{Key::stop_damping, 0.3}}}};
     double largest_ratio = 0.0;
     for (const Case& c : cases) {
         CAPTURE(c.name);

@@ -28,27 +28,32 @@ void FreeBranch::set_measure(double size) {
 FreeBranch::FreeBranch(const flow::System& system)
     : system_(system),
       scale_(system.integrator->linear_resonance(system.parameters)),
+      origin_(system.integrator->rest_state(system.parameters)),
       walker_([this](const SmallVector& u, SmallVector& f, SmallMatrix& j) { return evaluate(u, f, j); },
               {.first_step = 0.2,
                .largest_step = 20.0,
                .largest_parameter_step = 0.5,
                .target_angle = 0.2,
-               .largest_angle = 0.5}) {
+               .largest_angle = 0.5,
+               .tolerance = 1e-5,
+               .step_tolerance = 1e-5}) {
     set_measure(1.0);
 }
 
 SmallVector FreeBranch::to_scaled(const flow::State& y, double omega) const {
     const int n = system_.states();
     SmallVector u(n + 1);
-    for (int k = 0; k < n; ++k) { u[k] = y[static_cast<std::size_t>(k)] / measure_[static_cast<std::size_t>(k)]; }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
+        u[static_cast<int>(k)] = (y[k] - origin_[k]) / measure_[k];
+    }
     u[n] = omega / scale_;
     return u;
 }
 
 flow::State FreeBranch::to_state(const SmallVector& u) const {
     flow::State y{};
-    for (int k = 0; k < system_.states(); ++k) {
-        y[static_cast<std::size_t>(k)] = u[k] * measure_[static_cast<std::size_t>(k)];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(system_.states()); ++k) {
+        y[k] = origin_[k] + u[static_cast<int>(k)] * measure_[k];
     }
     return y;
 }

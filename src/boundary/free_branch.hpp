@@ -52,6 +52,7 @@ private:
     [[nodiscard]] flow::State to_state(const numerics::SmallVector& u) const;
 
     double scale_;         ///< frequencies are divided by this
+    flow::State origin_;   ///< rest: states are counted from here
     flow::State measure_;  ///< and states by these, see set_measure()
     orbit::Image image_;
     double image_omega_ = 0.0;

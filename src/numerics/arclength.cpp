@@ -68,7 +68,9 @@ ArclengthWalker::Correction ArclengthWalker::correct() {
         if (!du.allFinite()) { return Correction::rejected; }
         const double scale = 1.0 + candidate_.norm();
         if ((candidate_ - predicted_).norm() > options_.largest_correction * step_) { return Correction::rejected; }
-        if (f_.norm() <= options_.tolerance * scale && du.norm() <= 1e-6 * scale) { return Correction::converged; }
+        if (f_.norm() <= options_.tolerance * scale && du.norm() <= options_.step_tolerance * scale) {
+            return Correction::converged;
+        }
         candidate_ += du;
     }
     return Correction::rejected;
