@@ -27,12 +27,10 @@ Probe probe(const flow::System& system, const orbit::ContactSequence& guess, dou
     return p;
 }
 
-/// The sequence scaled to another (small) speed: the duration is proportional to it.
-orbit::ContactSequence rescaled(orbit::ContactSequence sequence, double speed) {
-    const double old = sequence.contacts[0].speed;
-    if (old > 0.0) { sequence.contacts[0].duration *= speed / old; }
-    sequence.contacts[0].speed = speed;
-    return sequence;
+/// Probe at another speed, started from the tangent of one that succeeded.
+Probe probe_from(const flow::System& system, const Probe& from, double speed) {
+    const orbit::SpeedSolution guess = orbit::predict_at_speed(system, from.solution, speed);
+    return probe(system, guess.sequence, guess.omega, speed);
 }
 
 /// The impacting branch as a curve in (v, theta, t_c, q..., omega/omega_grazing), for stops so soft that v itself turns
@@ -93,7 +91,7 @@ bool bracket_fold(const flow::System& system, const Boundary& grazing, GrazingFo
     double factor = 4.0;
     while (true) {
         const double speed = low.speed * factor;
-        high = probe(system, rescaled(low.solution.sequence, speed), low.solution.omega, speed);
+        high = probe_from(system, low, speed);
         if (!high.ok) {
             factor = std::sqrt(factor);
             if (factor < 1.1) {
@@ -165,7 +163,7 @@ GrazingFold find_fold_beside(const flow::System& system, const Boundary& grazing
     for (int iteration = 0; iteration < 40; ++iteration) {
         const double speed = (low.speed * weight_high - high.speed * weight_low) / (weight_high - weight_low);
         const double before = middle.speed;
-        middle = probe(system, rescaled(middle.solution.sequence, speed), middle.solution.omega, speed);
+        middle = probe_from(system, middle, speed);
         if (!middle.ok) { return fold; }
         if (std::abs(middle.speed - before) <= 1e-4 * middle.speed) { break; }
         if (middle.value < 0.0) {

@@ -275,7 +275,8 @@ SpeedSolution solve_at_speed(const flow::System& system, const ContactSequence& 
         if (!step.allFinite()) { return solution; }
         z += step;
         if (step.norm() <= 1e-11 * (1.0 + z.norm()) && r->value.norm() <= 1e-10) {
-            solution.slope = lu.solve(-r->by_unknowns.col(at_speed))[at_speed];
+            solution.tangent = lu.solve(-r->by_unknowns.col(at_speed));
+            solution.slope = solution.tangent[at_speed];
             solution.ok = true;
             break;
         }
@@ -284,6 +285,16 @@ SpeedSolution solve_at_speed(const flow::System& system, const ContactSequence& 
     z[at_speed] = speed;
     solution.sequence = unpack(system, z, guess.period);
     return solution;
+}
+
+SpeedSolution predict_at_speed(const flow::System& system, const SpeedSolution& from, double speed) {
+    const double change = speed - from.sequence.contacts[0].speed;
+    SpeedSolution guess;
+    Vector z = pack(system, from.sequence) + change * from.tangent;
+    z[at_speed] = speed;
+    guess.omega = from.omega + change * from.slope;
+    guess.sequence = unpack(system, z, from.sequence.period);
+    return guess;
 }
 
 std::optional<flow::State> state_at(const flow::System& system, const ContactSequence& sequence, double phase) {

@@ -67,7 +67,12 @@ struct SpeedSolution {
     ContactSequence sequence;
     double omega = 0.0;
     double slope = 0.0;  ///< d(omega)/d(speed)
+    /// d(unknowns)/d(speed), packed as by pack() with d(omega) in the place of the first contact's speed.
+    numerics::Vector tangent;
 };
+
+/// The solution carried along its tangent to another speed: a guess for solve_at_speed (sequence and frequency).
+SpeedSolution predict_at_speed(const flow::System& system, const SpeedSolution& from, double speed);
 SpeedSolution solve_at_speed(const flow::System& system, const ContactSequence& guess, double omega, double speed);
 
 /// State of the sequence at phase `phase`, by following the flight before the first contact back (or forward).
