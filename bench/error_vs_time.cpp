@@ -9,8 +9,8 @@
 // Reference: the state at the end of the period by the Taylor method in 80-bit long double at order 30 (reference.hpp);
 // achieved_error is the largest difference over the state. Below about 2e-15 it is rounding.
 //
-// Scenes: the actuator at the defaults of the paper and omega = 1.9, one blow; the same with a stop forty times as stiff;
-// a stop so damped (40 times critically) that the mass lies on it for a quarter of the period, which is stiff; the
+// Scenes: the actuator at the defaults of the paper and omega = 1.9, one blow; the same with a stop forty times as
+// stiff; a stop damped three times critically on which the mass lies for a quarter of the period, which is stiff; the
 // soft-impact oscillator of published results.
 //
 // Fairness: ARKODE and CVODE run as percuss ships them, with the printed equations as right-hand side; orbit_cost.cpp
@@ -79,9 +79,8 @@ void print_scene(const Scene& scene) {
     }
     std::vector<Contestant> contestants;
     for (Entry& entry : entries) {
-        contestants.push_back({entry.integrator, [&entry, &scene] {
-                                   entry.flow->run(scene.parameters, scene.request, entry.result);
-                               }});
+        contestants.push_back(
+            {entry.integrator, [&entry, &scene] { entry.flow->run(scene.parameters, scene.request, entry.result); }});
     }
     const Times times = interleave(contestants, {.rounds = 10});
     for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -4,8 +4,8 @@
 // Criterion: no level is slower than the one below it, and with sensitivities, which are the lanes that the wider
 // registers hold, every level gains. Exit status 1 when a level is more than 5 % slower than the one below it.
 //
-// Reference: v2 (SSE4.2, two doubles per register) with the same number of sensitivities; the states at the end agree to
-// the error that is printed, not to the bit, because v3 and v4 contract multiplications and additions.
+// Reference: v2 (SSE4.2, two doubles per register) with the same number of sensitivities; the states at the end agree
+// to the error that is printed, not to the bit, because v3 and v4 contract multiplications and additions.
 //
 // Machine: one that has all levels; those that it lacks are left out. Processor time of one thread, ratios of minima
 // over interleaved rounds in one process.
@@ -38,7 +38,7 @@ int main() {
     std::vector<Kernel> all;
     for (int lanes : lane_counts) {
         for (std::string_view set : sets) {
-            Kernel kernel{std::string(set), lanes, make({}, "taylor", 1e-13, set), directions(4, lanes),
+            Kernel kernel{std::string(set),         lanes, make({}, "taylor", 1e-13, set), directions(4, lanes),
                           cycles_from(paper_orbit), {}};
             all.push_back(std::move(kernel));
         }
@@ -52,8 +52,8 @@ int main() {
     const Times times = interleave(contestants, {.rounds = 100});
 
     bool pass = true;
-    std::printf("%-6s %5s %14s %20s %14s %10s %12s\n", "set", "lanes", "time / lowest", "time / same, 0 lanes", "microseconds",
-                "steps", "error");
+    std::printf("%-6s %5s %14s %20s %14s %10s %12s\n", "set", "lanes", "time / lowest", "time / same, 0 lanes",
+                "microseconds", "steps", "error");
     for (std::size_t i = 0; i < all.size(); ++i) {
         const std::size_t level = i % sets.size();
         const std::size_t weakest = i - level;

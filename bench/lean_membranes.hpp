@@ -94,9 +94,7 @@ private:
         for (std::size_t k = 0; k < parameters.size(); ++k) { parameters[k] = T(p[k]); }
         for (std::size_t k = 0; k < y.size(); ++k) { y[k] = T(state[k]); }
         for (std::size_t i = 0; i < directions.size(); ++i) {
-            for (std::size_t k = 0; k < parameters.size(); ++k) {
-                parameters[k].d.set(i, directions[i].parameter[k]);
-            }
+            for (std::size_t k = 0; k < parameters.size(); ++k) { parameters[k].d.set(i, directions[i].parameter[k]); }
             for (std::size_t k = 0; k < y.size(); ++k) { y[k].d.set(i, directions[i].state[k]); }
             phase.d.set(i, directions[i].phase);
         }

@@ -10,8 +10,9 @@
 //   one period        the flow alone, from the orbit's state
 //   orbit by runs     no sensitivities anywhere: Newton's method with its Jacobian from plain runs by forward
 //                     differences, five runs per iteration
-//   orbit             orbit::find_orbit: damped Newton with the monodromy matrix from the integrator's own sensitivities
-//   orbit, gradients  the same, then orbit::portray: derivatives of the orbit and of the five force observables along
+//   orbit             orbit::find_orbit: damped Newton with the monodromy matrix from the integrator's own
+//   sensitivities orbit, gradients  the same, then orbit::portray: derivatives of the orbit and of the five force
+//   observables along
 //                     8 parameters
 //
 // The bar applies to the last three. Each integrator runs each job at its own tolerance: the loosest of a scan, in
@@ -248,8 +249,8 @@ bool compare(const Job& job, const std::vector<Peer>& all) {
     }
     const bool pass = better >= bar;
     if (job.barred) {
-        std::printf("  %s: %.1f times faster than the better of them, asked for %.0f\n\n", pass ? "PASS" : "FAIL", better,
-                    bar);
+        std::printf("  %s: %.1f times faster than the better of them, asked for %.0f\n\n", pass ? "PASS" : "FAIL",
+                    better, bar);
     } else {
         std::printf("\n");
     }
@@ -268,10 +269,11 @@ int main() {
     const std::vector<Peer> all = peers();
     const auto tight = make({}, "erk", 1e-14);
     const Outcome check = orbit_with_gradients({tight.get(), paper_defaults, nullptr});
-    std::printf("Achieved error at most %.0e; kernels %s. Ratios: time in units of taylor's; ratio of minima, median and\n"
-                "lowest of single rounds. Reference gradients against arkode at 1e-14: %.1e\n\n",
-                target_error, std::string(kernels::instruction_set_in_use("auto")).c_str(),
-                gradient_error(check.portrait, reference_portrait()));
+    std::printf(
+        "Achieved error at most %.0e; kernels %s. Ratios: time in units of taylor's; ratio of minima, median and\n"
+        "lowest of single rounds. Reference gradients against arkode at 1e-14: %.1e\n\n",
+        target_error, std::string(kernels::instruction_set_in_use("auto")).c_str(),
+        gradient_error(check.portrait, reference_portrait()));
     bool pass = true;
     for (const Job& job : jobs) { pass = compare(job, all) && pass; }
     return pass ? 0 : 1;

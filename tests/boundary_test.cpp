@@ -4,6 +4,7 @@
 #include "design/operating_point.hpp"
 #include "engine_cases.hpp"
 #include "orbit/orbit.hpp"
+#include "relative.hpp"
 
 #include <doctest/doctest.h>
 
@@ -32,8 +33,7 @@ flow::System system_of(const flow::Integrator& integrator, const ParameterVector
 /// Free orbit of the half-cycle map at a frequency, from rest.
 flow::State free_state(const flow::System& system, double omega) {
     const flow::System there = system.at_omega(omega);
-    const auto settled =
-        orbit::settle(there, there.integrator->rest_state(there.parameters), 60, flow::StopMode::off);
+    const auto settled = orbit::settle(there, there.integrator->rest_state(there.parameters), 60, flow::StopMode::off);
     REQUIRE(settled.has_value());
     const Orbit free = orbit::find_orbit(there, boundary::FreeBranch::half_cycle(), *settled);
     REQUIRE(free.ok());
@@ -152,8 +152,8 @@ TEST_CASE("grazing of a linear oscillator: F = d sqrt((k - w^2)^2 + c^2 w^2)") {
         CHECK(std::abs(point.omega - w) < 1e-12 * (1.0 + 1.0 / steepness));
         // F^2/d^2 = (k - w^2)^2 + c^2 w^2 differentiated.
         const double by_omega = -4.0 * w * (k - w * w) + 2.0 * c * c * w;
-        CHECK(point.d_omega[0] == doctest::Approx(2.0 * force / (d * d) / by_omega).epsilon(1e-9));
-        CHECK(point.d_omega[1] == doctest::Approx(-2.0 * force * force / (d * d * d) / by_omega).epsilon(1e-9));
+        CHECK(point.d_omega[0] == test::relative(2.0 * force / (d * d) / by_omega, 1e-8));
+        CHECK(point.d_omega[1] == test::relative(-2.0 * force * force / (d * d * d) / by_omega, 1e-8));
         const double lag = std::atan2(c * w, k - w * w);
         CHECK(std::abs(std::remainder(point.theta_contact - lag, two_pi)) < 1e-7);
     }
@@ -167,10 +167,10 @@ TEST_CASE("the fold beside the upper grazing point of the defaults") {
     const boundary::GrazingFold fold = boundary::find_fold_beside(system, grazing, 0.02);
     REQUIRE(fold.status == boundary::GrazingFold::Status::found);
     // 5.64e-9, known to three digits.
-    CHECK(grazing.omega - fold.omega == doctest::Approx(reference::fold_offset_upper).epsilon(2e-3));
-    CHECK(fold.offset * grazing.omega == doctest::Approx(reference::fold_offset_upper).epsilon(2e-3));
+    CHECK(grazing.omega - fold.omega == test::relative(reference::fold_offset_upper, 2e-3));
+    CHECK(fold.offset * grazing.omega == test::relative(reference::fold_offset_upper, 2e-3));
     CHECK(std::abs(fold.omega - reference::fold_near_grazing_upper) < 6e-12);
-    CHECK(fold.speed == doctest::Approx(8.4e-5).epsilon(1e-2));  // two digits published
+    CHECK(fold.speed == test::relative(8.4e-5, 1e-2));  // two digits published
     // On either side of the fold's speed the branch lies higher in frequency.
     for (const double factor : {0.5, 2.0}) {
         orbit::ContactSequence guess = fold.sequence;
@@ -191,10 +191,10 @@ TEST_CASE("fold and flip of the impacting orbit of the defaults") {
     const Boundary fold = boundary::solve_boundary(system, whole, Kind::fold, near_fold.state, 2.58, {});
     REQUIRE(fold.ok());
     CHECK(std::abs(fold.omega - reference::fold_upper) < 1e-9);
-    const orbit::Image image = orbit::apply(system.at_omega(fold.omega), whole, fold.state,
-                                            orbit::Differentiate::state, {}, flow::observe_force);
+    const orbit::Image image = orbit::apply(system.at_omega(fold.omega), whole, fold.state, orbit::Differentiate::state,
+                                            {}, flow::observe_force);
     // The state at a fold is only as good as the square root of what omega is good to; the force has 11 digits given.
-    CHECK(image.observed[orbit::peak_force].value == doctest::Approx(reference::fold_upper_peak_force).epsilon(1e-9));
+    CHECK(image.observed[orbit::peak_force].value == test::relative(reference::fold_upper_peak_force, 1e-9));
     Orbit there;
     there.monodromy = image.derivative;
     CHECK(std::abs(orbit::multipliers(there)[0] - 1.0) < 1e-7);
@@ -236,8 +236,8 @@ TEST_CASE("torus point of a free motion with low losses") {
     REQUIRE(torus.ok());
     CHECK(std::abs(torus.omega - 1.79) < 0.01);  // "near 1.79"
     Orbit there;
-    there.monodromy = orbit::apply(system.at_omega(torus.omega), half, torus.state, orbit::Differentiate::state)
-                          .derivative;
+    there.monodromy =
+        orbit::apply(system.at_omega(torus.omega), half, torus.state, orbit::Differentiate::state).derivative;
     const auto leading = orbit::multipliers(there)[0];
     CHECK(std::abs(std::abs(leading) - 1.0) < 1e-9);
     CHECK(std::abs(leading.imag()) > 1e-3);
@@ -277,8 +277,7 @@ TEST_CASE("soft impact: grazing frequencies, multipliers, folds and the fold cur
 
     const auto near_fold = design::continue_orbit(system.at_omega(soft::multiplier_omega), *at_known, 1.572);
     REQUIRE(near_fold.has_value());
-    const Boundary fold =
-        boundary::solve_boundary(system, near_fold->map, Kind::fold, near_fold->state, 1.572, {});
+    const Boundary fold = boundary::solve_boundary(system, near_fold->map, Kind::fold, near_fold->state, 1.572, {});
     REQUIRE(fold.ok());
     CHECK(std::abs(fold.omega - soft::fold_upper) < 1e-9);
     const orbit::Image image = orbit::apply(system.at_omega(fold.omega), near_fold->map, fold.state,
@@ -295,9 +294,8 @@ TEST_CASE("soft impact: grazing frequencies, multipliers, folds and the fold cur
         CAPTURE(known_force);
         while (force != known_force) {
             force = std::min(known_force, force + 0.01);
-            point = boundary::solve_boundary(
-                system.with(test::with(soft::parameters, model::spring::force, force)), near_fold->map, Kind::fold,
-                point.state, point.omega, {});
+            point = boundary::solve_boundary(system.with(test::with(soft::parameters, model::spring::force, force)),
+                                             near_fold->map, Kind::fold, point.state, point.omega, {});
             REQUIRE(point.ok());
         }
         CHECK(std::abs(point.omega - known_omega) < 1.1e-9);  // nine decimals given
@@ -314,8 +312,8 @@ TEST_CASE("the edge of the defaults by the rule, and free motions that coexist b
     REQUIRE(edge.status == boundary::EdgeStatus::found);
     CHECK(edge.boundary.kind == Kind::grazing);
     CHECK(std::abs(edge.boundary.omega - test::edge_reference::omega) < 6e-12);
-    CHECK(edge.boundary.d_omega[0] == doctest::Approx(test::edge_reference::d_gap[0]).epsilon(1e-5));
-    CHECK(edge.boundary.d_omega[1] == doctest::Approx(test::edge_reference::d_phi_pp[0]).epsilon(1e-5));
+    CHECK(edge.boundary.d_omega[0] == test::relative(test::edge_reference::d_gap[0], 1e-5));
+    CHECK(edge.boundary.d_omega[1] == test::relative(test::edge_reference::d_phi_pp[0], 1e-5));
     CHECK(edge.searched_from > 3.0 * 1.5);
     CHECK(edge.searched_to <= edge.boundary.omega);
     CHECK(edge.reason.empty());

@@ -1,9 +1,8 @@
 // Gradients of every reported quantity against differences of the program itself, from the problem's keys through
 // scaling, edge, operating point and orbit to the quantity.
 
-#include "design/evaluate.hpp"
+#include "design_cases.hpp"
 #include "engine_cases.hpp"
-#include "shipped_problem.hpp"
 
 #include <doctest/doctest.h>
 
@@ -18,16 +17,9 @@ using design::EvaluationStatus;
 using design::Quantity;
 using model::Key;
 using model::Specification;
-using test::at;
+using test::everything;
 
 namespace {
-
-Demand everything(const Specification& spec) {
-    Demand demand;
-    const auto all = design::reported_quantities(spec.family);
-    demand.quantities.assign(all.begin(), all.end());
-    return demand;
-}
 
 /// Every quantity that has a gradient, and the frequencies of the operating point.
 struct Component {
@@ -123,8 +115,8 @@ TEST_CASE("ten random actuators, by every key, at the operating point below thei
         spec.set(Key::drive_voltage, random.uniform(2000.0, 3600.0));
         spec.set(Key::prestretch, random.uniform(1.05, 1.2));
         spec.set(Key::layers, random.uniform(1.0, 3.5));
-        for (const Key key : {Key::moving_mass, Key::membrane_thickness, Key::rod_length, Key::inner_radius,
-                              Key::outer_radius}) {
+        for (const Key key :
+             {Key::moving_mass, Key::membrane_thickness, Key::rod_length, Key::inner_radius, Key::outer_radius}) {
             spec.set(key, spec.value(key) * random.uniform(0.85, 1.15));
         }
         if (evaluator.evaluate(spec, everything(spec)).status != EvaluationStatus::ok) { continue; }

@@ -85,8 +85,8 @@ struct NaiveSeries {
     }
 };
 
-/// Solution of y' = f(theta, y), y(theta_0) = y_0 as series in theta - theta_0: y <- y_0 + integral of f(theta, y) gains
-/// one coefficient each time. f(theta, y, rate).
+/// Solution of y' = f(theta, y), y(theta_0) = y_0 as series in theta - theta_0: y <- y_0 + integral of f(theta, y)
+/// gains one coefficient each time. f(theta, y, rate).
 template <std::size_t N, std::size_t States, class Function>
 std::array<NaiveSeries<N>, States> picard(double theta, const std::array<double, States>& start, Function&& f) {
     using Series = NaiveSeries<N>;

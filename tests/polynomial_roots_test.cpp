@@ -108,7 +108,8 @@ void check_roots(const std::vector<double>& c, const std::vector<Seen>& expected
         CHECK(roots.sign[i] == expected[i].sign);
     }
     for (int sign : {-1, 1}) {
-        const auto first = std::find_if(expected.begin(), expected.end(), [&](const Seen& s) { return s.sign == sign; });
+        const auto first =
+            std::find_if(expected.begin(), expected.end(), [&](const Seen& s) { return s.sign == sign; });
         double t = -1.0;
         const bool found = numerics::first_sign_change(c.data(), static_cast<int>(c.size()) - 1, sign, t);
         CHECK(found == (first != expected.end()));
@@ -215,9 +216,7 @@ TEST_CASE("touching without crossing is not an event") {
         INFO("coefficients ", text(c));
         CAPTURE(where);
         CHECK(roots.count % 2 == 0);
-        for (int i = 0; i < roots.count; ++i) {
-            CHECK(std::abs(roots.at[static_cast<std::size_t>(i)] - where) < blur);
-        }
+        for (int i = 0; i < roots.count; ++i) { CHECK(std::abs(roots.at[static_cast<std::size_t>(i)] - where) < blur); }
     }
     // A triple root is a crossing; it is only good to the cube root of eps.
     const Roots triple = find(rounded(times(linear(0.3L), times(linear(0.3L), linear(0.3L)))));
@@ -230,7 +229,9 @@ TEST_CASE("roots at the ends: 0 is not in the interval, 1 is; one half, where th
     CHECK(find({0.0, 0.0, 1.0}).count == 0);
     check_roots({0.0, -0.5, 1.0}, {{0.5, 1}});
     check_roots({-0.5, 1.0}, {{0.5, 1}});
-    // (t - 1/2)(t - 1/4)(t - 3/4): the first cut lands on the middle root.
+    // Exactly representable throughout, so that the first cut lands on the root at 1/2 to the last bit.
+    check_roots({0.125, -0.75, 1.0}, {{0.25, -1}, {0.5, 1}});
+    check_roots({0.375, -1.25, 1.0}, {{0.5, -1}, {0.75, 1}});
     check_roots(rounded(times(linear(0.5L), times(linear(0.25L), linear(0.75L)))), {{0.25, 1}, {0.5, -1}, {0.75, 1}});
     check_roots(rounded(times(linear(0.5L), pair(0.5L, 0.1L))), {{0.5, 1}});
     check_roots({-1.0, 1.0}, {{1.0, 1}});

@@ -98,10 +98,8 @@ inline constexpr double entry_velocity = 0.102971965449496;
 inline constexpr double exit_tau = 1.83003348997329;
 inline constexpr double exit_velocity = -0.0969072098012401;
 /// Good to 4e-10 of the modulus.
-inline const std::array<std::complex<double>, 4> multipliers = {{{0.88573446803, 0.0},
-                                                                 {0.84712674709, 0.0},
-                                                                 {-0.10218488568, 0.80397229482},
-                                                                 {-0.10218488568, -0.80397229482}}};
+inline const std::array<std::complex<double>, 4> multipliers = {
+    {{0.88573446803, 0.0}, {0.84712674709, 0.0}, {-0.10218488568, 0.80397229482}, {-0.10218488568, -0.80397229482}}};
 }  // namespace at_1_9
 
 /// dea.json, "boundaries".
@@ -115,8 +113,8 @@ inline constexpr double fold_upper_peak_force = 19.6493335974;
 inline constexpr double flip = 1.745872449920;
 }  // namespace boundary_reference
 
-/// dea.json, "edge": at margin 0, total derivatives of [omega_edge, peak_force, amplitude] by central differences, about
-/// six digits.
+/// dea.json, "edge": at margin 0, total derivatives of [omega_edge, peak_force, amplitude] by central differences,
+/// about six digits.
 namespace edge_reference {
 inline constexpr double omega = 1.93541550079;
 inline constexpr double peak_force = 5.2530196539;

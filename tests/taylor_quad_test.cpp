@@ -89,7 +89,8 @@ QuadOrbit quad_orbit(const ParameterVector& p, const State& start) {
         // The residual's size is taken out before it is rounded to double.
         numerics::SmallVector defect(4);
         for (int k = 0; k < 4; ++k) {
-            defect[k] = static_cast<double>((result.last.state[at(k)] - result.state[at(k)]) * Quad(1.0 / result.residual));
+            defect[k] =
+                static_cast<double>((result.last.state[at(k)] - result.state[at(k)]) * Quad(1.0 / result.residual));
         }
         const numerics::SmallVector step = lu.solve(defect);
         for (int k = 0; k < 4; ++k) { result.state[at(k)] += Quad(step[k]) * Quad(result.residual); }

@@ -21,7 +21,8 @@ struct FreePoint {
     /// Of the half-cycle map: modulus of the largest multiplier, and which boundary lies where it crosses 1.
     double radius = 0.0;
     Kind nearest = Kind::none;
-    [[nodiscard]] bool stable() const { return radius < 1.0; }
+    /// Within the accuracy of a scout a radius of 1 is neutral (an undamped system), which is no loss of stability.
+    [[nodiscard]] bool stable() const { return radius < 1.0 + 1e-5; }
 };
 
 class FreeBranch {

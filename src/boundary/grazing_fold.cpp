@@ -78,7 +78,8 @@ void follow_by_arclength(const flow::System& system, const Boundary& grazing, co
             fold.sequence = orbit::unpack(system, walker.point().head(n), 1);
             return;
         }
-        if (1.0 - walker.point()[n] > fold.reach || walker.point()[0] <= 0.0) {
+        if (walker.point()[0] <= 0.0) { return; }
+        if (1.0 - walker.point()[n] > fold.reach) {
             fold.status = GrazingFold::Status::none;
             return;
         }

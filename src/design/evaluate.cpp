@@ -212,6 +212,7 @@ private:
             Reached candidate = from_start(*settled, period);
             if (fits(candidate)) { return candidate; }
         }
+        reached = Reached{};  // what was reached instead is not an answer
         reached.kind = Reached::Kind::unsettled;
         reached.reason = "no stable orbit of period " + std::to_string(period) + " was found from 200 starts";
         return reached;
@@ -267,14 +268,12 @@ private:
         system_ = system_.at_omega(operation.omega);
         tighter_ = tighter_.at_omega(operation.omega);
         accept(operation.reached);
-        const bool free_motion_alive =
-            std::any_of(operation.free_orbits.points.begin(), operation.free_orbits.points.end(),
-                        [](const auto& p) { return p.stable() && p.clearance < 0.0; });
-        if (result_.status != EvaluationStatus::ok && free_motion_alive) {
+        const Reached& reached = operation.reached;
+        if (reached.kind == Reached::Kind::unsettled && !reached.orbit.ok() && reached.settled_clear) {
             result_.status = EvaluationStatus::no_impact;
-            result_.reason =
-                "at the operating frequency, the margin below the edge, the free motion is clear of the stop "
-                "again and no impacting orbit is reached: the impact band is narrower than the margin";
+            result_.reason = "at the operating frequency, the margin below the edge, the motion settles clear of the "
+                             "stop again: the "
+                             "impact band is narrower than the margin";
         }
         if (options.check_neighbours && result_.status == EvaluationStatus::ok) {
             judge(operation.free_orbits, operation.fold ? &*operation.fold : nullptr);
@@ -294,7 +293,17 @@ private:
         omega_error_ = (1.0 - problem_.margin) * (moved + 4e-16 * edge.omega);
     }
 
-    void accept(const Reached& reached) {
+    /// An orbit that repeats sooner than its map is one of the shorter period.
+    void reduce_period(orbit::Orbit& orbit) const {
+        const int period = minimal_period(system_, orbit);
+        if (period == orbit.map.period) { return; }
+        orbit::ReturnMap map = orbit.map;
+        map.period = period;
+        const orbit::Orbit shorter = orbit::find_orbit(system_, map, orbit.state);
+        if (shorter.ok()) { orbit = shorter; }
+    }
+
+    void accept(Reached reached) {
         switch (reached.kind) {
             case Reached::Kind::stable: result_.status = EvaluationStatus::ok; break;
             case Reached::Kind::unstable:
@@ -303,6 +312,8 @@ private:
         }
         result_.reason = reached.reason;
         if (!reached.orbit.ok()) { return; }
+        reduce_period(reached.orbit);
+        orbit_ = reached.orbit;
         const model::Scales& scales = scaled_.scales;
         const Measurement measurement =
             measure(system_, &tighter_, reached.orbit, scales, keys_, demand_, omega_error_, result_);
@@ -312,7 +323,7 @@ private:
             return;
         }
         OrbitReport& report = result_.orbit;
-        report.period = minimal_period(system_, reached.orbit);
+        report.period = reached.orbit.map.period;
         report.contacts = static_cast<int>(reached.orbit.contacts.size());
         report.residual = measurement.portrait.residual;
         report.state = to_user(state_at_zero(system_, reached.orbit), scales, system_.states());
@@ -327,44 +338,91 @@ private:
         report.multipliers.assign(values.begin(), values.end());
     }
 
-    /// Tier 1: no fold beside the edge within the margin, no free orbit alive at the operating frequency, and the
-    /// impacting orbit stable.
+    /// Tier 1: no stable free orbit at the operating frequency, no fold beside the edge beyond the margin, and the
+    /// motion from rest is the tuned one; where no fold is located (another kind of edge, a frequency that was given),
+    /// two more starts must lead to it too.
     void judge(const boundary::FreeOrbitsAt& free, const boundary::GrazingFold* fold) {
+        using FoldStatus = boundary::GrazingFold::Status;
         Uniqueness& uniqueness = result_.uniqueness;
         uniqueness.tier = 1;
         for (const boundary::FreePoint& p : free.points) {
-            if (!(p.clearance < 0.0) || !p.stable()) { continue; }
-            Attractor other;
-            other.period = 1;
-            other.state = to_user(p.state, scaled_.scales, system_.states());
-            other.peak_force = 0.0;
-            other.amplitude = scaled_.scales.length *
-                              (p.clearance + system_.stop_position() - system_.integrator->centre(system_.parameters));
-            other.max_multiplier = p.radius * p.radius;
-            uniqueness.attractors.push_back(other);
+            if (p.clearance < 0.0 && p.stable()) { add_free_attractor(p); }
         }
-        const bool fold_within = fold == nullptr || fold->status == boundary::GrazingFold::Status::none ||
-                                 result_.operating_point.fold_offset < problem_.margin;
+        const bool located =
+            fold != nullptr && (fold->status == FoldStatus::found || fold->status == FoldStatus::at_once);
+        if (uniqueness.attractors.empty()) { add_attractors_from_starts(located ? 1 : 3); }
         if (!uniqueness.attractors.empty()) {
-            reject("a stable motion clear of the stop coexists at the operating frequency");
-        } else if (fold != nullptr && fold->status == boundary::GrazingFold::Status::failed) {
+            const bool clear = uniqueness.attractors.front().peak_force == 0.0;
+            reject(clear ? "a stable motion clear of the stop coexists at the operating frequency"
+                         : "another stable motion that strikes coexists at the operating frequency");
+        } else if (fold != nullptr && fold->status == FoldStatus::failed) {
             uniqueness.checked = "tier 1: the fold beside the edge could not be located";
-        } else if (!fold_within) {
+        } else if (located && !(result_.operating_point.fold_offset <= problem_.margin)) {
             reject("the fold beside the edge lies further below it than the margin");
         } else if (!free.complete) {
             uniqueness.checked = "tier 1: the free motion could not be followed below the operating frequency";
         } else {
             uniqueness.verdict = Verdict::unique;
             uniqueness.checked =
-                "tier 1: alone among period-1 motions (the free motion followed past the operating frequency, the fold "
-                "beside the edge within the margin, all multipliers inside the unit circle); longer periods not "
-                "searched";
+                located ? "tier 1: alone among the period-1 motions found (the free motion followed past the operating "
+                          "frequency, the fold beside the edge within the margin, the start from rest leads here); "
+                          "longer periods not searched"
+                        : "tier 1: alone among the period-1 motions found (the free motion followed past the operating "
+                          "frequency, three starts lead here, no fold located); longer periods not searched";
         }
-        if (problem_.single_stable == SingleStable::sampled || problem_.single_stable == SingleStable::refuted) {
-            if (uniqueness.verdict == Verdict::unique) { uniqueness.verdict = Verdict::not_checked; }
-            uniqueness.checked += "; the sampled check that was asked for is not available in this version";
+        // The sampled tiers are not in this version: what was asked for has then not been checked.
+        if (problem_.single_stable > SingleStable::orbit && uniqueness.verdict == Verdict::unique) {
+            uniqueness.verdict = Verdict::not_checked;
         }
     }
+
+    void add_free_attractor(const boundary::FreePoint& p) {
+        Attractor other;
+        other.period = 1;
+        other.state = to_user(p.state, scaled_.scales, system_.states());
+        other.peak_force = 0.0;
+        other.amplitude = scaled_.scales.length *
+                          (p.clearance + system_.stop_position() - system_.integrator->centre(system_.parameters));
+        other.max_multiplier = p.radius * p.radius;
+        result_.uniqueness.attractors.push_back(other);
+    }
+
+    /// From rest; from the stop at speed; from far behind. A stable period-1 orbit other than the accepted one refutes.
+    void add_attractors_from_starts(int count) {
+        const flow::State rest = system_.integrator->rest_state(system_.parameters);
+        const double gap = system_.stop_position() - system_.integrator->centre(system_.parameters);
+        const flow::State here = state_at_zero(system_, orbit_);
+        result_.uniqueness.starts = count;
+        for (int i = 0; i < count; ++i) {
+            flow::State start = rest;
+            if (i == 1) {
+                start[0] += 0.9 * gap;
+                start[1] = 2.0 * system_.omega() * gap;
+            } else if (i == 2) {
+                start[0] -= 3.0 * gap;
+            }
+            const auto found = stable_orbit_from(system_, start);
+            if (!found) { continue; }
+            const flow::State there = state_at_zero(system_, *found);
+            double distance = 0.0;
+            for (std::size_t k = 0; k < there.size(); ++k) {
+                distance = std::max(distance, std::abs(there[k] - here[k]));
+            }
+            if (distance < 1e-6) { continue; }
+            const orbit::Image image = orbit::apply(system_, found->map, found->state, orbit::Differentiate::nothing,
+                                                    {}, flow::observe_extrema | flow::observe_force);
+            Attractor other;
+            other.period = 1;
+            other.state = to_user(there, scaled_.scales, system_.states());
+            other.peak_force = scaled_.scales.force * image.observed[orbit::peak_force].value;
+            other.amplitude =
+                0.5 * scaled_.scales.length * (image.observed[orbit::x_max].value - image.observed[orbit::x_min].value);
+            other.max_multiplier = orbit::max_multiplier(*found);
+            result_.uniqueness.attractors.push_back(other);
+            return;
+        }
+    }
+
     void reject(std::string_view why) {
         result_.uniqueness.verdict = Verdict::not_unique;
         result_.uniqueness.checked = "tier 1: " + std::string(why);
@@ -384,6 +442,7 @@ private:
     flow::Cost cost_;
     flow::System system_, tighter_, scout_;
     std::vector<KeyDirection> keys_;
+    orbit::Orbit orbit_;  ///< the accepted one
     double omega_error_ = 0.0;
     Evaluation result_;
 };

@@ -99,6 +99,9 @@ Orbit polish_orbit(const flow::System& system, const flow::State& from, int peri
         return found;
     }
     found = orbit::find_orbit(system, map, strobe.state);
+    const bool cut =
+        found.ok() && !found.contacts.empty() && (found.contacts.front().open_in || found.contacts.back().open_out);
+    if (cut) { found = orbit::away_from_contact(system, found); }  // else one contact would count as two
     if (found.ok() && (found.contacts.empty() || lowest_impact_speed(found) > slow_contact)) { return found; }
     // Contact-sequence shooting from what was met, or from the stroboscopic solution.
     Orbit seed = found;
@@ -118,7 +121,7 @@ Reached reach_orbit(const flow::System& system, const flow::State& from, int per
     reached.kind = Reached::Kind::unsettled;
     reached.reason = "no orbit of period " + std::to_string(period) + " was reached";
     flow::State state = from;
-    for (int cycles : {24, 48, 96, 192, 384}) {
+    for (int cycles : {8, 16, 32, 64, 128, 256, 256}) {
         const auto settled = orbit::settle(system, state, cycles * period);
         if (!settled) {
             reached.kind = Reached::Kind::failed;
@@ -127,6 +130,9 @@ Reached reach_orbit(const flow::System& system, const flow::State& from, int per
         }
         state = *settled;
         const Orbit found = polish_orbit(system, state, period);
+        if (found.ok() && found.contacts.empty() && orbit::max_multiplier(found) < 1.0) {
+            reached.settled_clear = true;
+        }
         if (!counts(found, must_strike)) { continue; }
         const bool stable = orbit::max_multiplier(found) < 1.0;
         if (stable || reached.kind != Reached::Kind::unstable) { reached.orbit = found; }
@@ -138,6 +144,14 @@ Reached reach_orbit(const flow::System& system, const flow::State& from, int per
         reached.reason = "the orbit of period " + std::to_string(period) + " is unstable";
     }
     return reached;
+}
+
+std::optional<Orbit> stable_orbit_from(const flow::System& system, const flow::State& from) {
+    const auto settled = orbit::settle(system, from, 48);
+    if (!settled) { return std::nullopt; }
+    const Orbit found = polish_orbit(system, *settled, 1);
+    if (!found.ok() || !(orbit::max_multiplier(found) < 1.0)) { return std::nullopt; }
+    return found;
 }
 
 flow::State state_at_zero(const flow::System& system, const Orbit& orbit) {

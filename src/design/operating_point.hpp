@@ -24,6 +24,7 @@ struct Reached {
     };
     Kind kind = Kind::not_run;
     orbit::Orbit orbit;
+    bool settled_clear = false;  ///< a stable orbit that never touches the stop was met on the way
     std::string reason;
 };
 
@@ -31,6 +32,9 @@ struct Reached {
 /// until a stable orbit of `period` cycles is captured. `must_strike`: an orbit that never touches the stop does not
 /// count.
 Reached reach_orbit(const flow::System& system, const flow::State& from, int period, bool must_strike);
+
+/// The stable orbit of one cycle that a start leads to, or nothing.
+std::optional<orbit::Orbit> stable_orbit_from(const flow::System& system, const flow::State& from);
 
 /// Newton from a state; the strobe phase is chosen away from contact. Low-speed contacts, where stroboscopic shooting
 /// has a corner, go through contact-sequence shooting.

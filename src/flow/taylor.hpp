@@ -24,8 +24,9 @@ inline namespace PERCUSS_ISA {
 
 enum class Law : std::uint8_t { kelvin_voigt, no_tension, none };
 
-/// Derivative parts of the series stop this many orders before the values. With steps of radius/e^2 the loss is
-/// e^(-2 order): 5e-12 relative at order 17, for less than two thirds of the work.
+/// Unless a request wants full derivatives, the derivative parts of the series stop this many orders before the values:
+/// less than two thirds of the work. Measured on the default orbit, the monodromy matrix is then good to 1e-9 at
+/// tolerance 1e-13 and to a few 1e-5 at 1e-8: enough for Newton's method, not for what is reported.
 inline constexpr int derivative_orders_saved = 4;
 /// Sensitivities alone may carry this much more relative error per step than the values, before they shorten it.
 inline constexpr double lane_tolerance = 1e-2;

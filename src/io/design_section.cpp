@@ -110,7 +110,7 @@ Quantity parse_quantity_name(const Setting& setting, std::string_view name, mode
 void add_objective(const Setting& setting, bool maximise, design::Problem& problem) {
     const auto quantity = parse_quantity_name(setting, trimmed(setting.value), problem.actuator.family);
     if (!design::quantity_info(quantity).smooth) {
-        throw bad_value(setting, "is a whole number and cannot be an objective; give a limit on it");
+        throw bad_value(setting, "is a whole number and has no gradient: it cannot be an objective");
     }
     const auto same = [&](const design::Objective& other) { return other.quantity == quantity; };
     if (std::any_of(problem.objectives.begin(), problem.objectives.end(), same)) {

@@ -22,8 +22,8 @@ struct ContinuousVariable {
 };
 
 /// minimise -+objective/scale subject to limits: (q - bound)/|bound| <= 0 or the other way round. A design whose status
-/// is not ok (no impact, unstable, not alone) is a failed evaluation; so is one whose uniqueness was asked for and could
-/// not be settled.
+/// is not ok (no impact, unstable, not alone) is a failed evaluation; so is one whose uniqueness was asked for and
+/// could not be settled.
 class DesignNlp final : public optimise::Nlp {
 public:
     /// `fixed`: the actuator with the enumerated integers set. objective_scale > 0.

@@ -102,7 +102,7 @@ std::string describe_infeasible(const design::Problem& problem, const MultiStart
         violations.maxCoeff(&worst);
         names = problem.limits[static_cast<std::size_t>(worst)].text;
     }
-    return "no design meets the limit " + names;
+    return "no design was found that meets the limit " + names;
 }
 
 class Optimisation {
@@ -265,7 +265,9 @@ private:
             result.per_layers.push_back(c.report);
             result.evaluations += c.evaluations;
             const bool usable = c.verified && c.verified->status == design::EvaluationStatus::ok;
-            if (usable && (best == nullptr || better(c, *best))) { best = &c; }
+            if (!usable) { continue; }
+            const bool differ = best != nullptr && c.optimal != best->optimal;  // a certified case comes first
+            if (best == nullptr || (differ ? c.optimal : better(c, *best))) { best = &c; }
         }
         const bool cut_short = cases.size() < expected || std::any_of(cases.begin(), cases.end(), [](const Case& c) {
                                    return c.report.status == "budget";
