@@ -2,6 +2,7 @@
 
 #include "design/measure.hpp"
 #include "design/operating_point.hpp"
+#include "design/uniqueness.hpp"
 #include "kernels/kernels.hpp"
 
 #include <algorithm>
@@ -39,20 +40,6 @@ EdgeKind to_edge_kind(boundary::Kind kind) {
         case boundary::Kind::torus: return EdgeKind::torus;
     }
     return EdgeKind::none;
-}
-
-/// Factor from nondimensional state to the problem's units, per entry.
-std::vector<double> state_scales(const model::Scales& scales, int states) {
-    std::vector<double> factors(index(states), 1.0);
-    factors[0] = scales.length;
-    factors[1] = scales.length / scales.time;
-    return factors;
-}
-
-std::vector<double> to_user(const flow::State& y, const model::Scales& scales, int states) {
-    std::vector<double> out = state_scales(scales, states);
-    for (std::size_t k = 0; k < out.size(); ++k) { out[k] *= y[k]; }
-    return out;
 }
 
 flow::State from_user(const std::vector<double>& given, const model::Scales& scales, int states) {
@@ -338,96 +325,18 @@ private:
         report.multipliers.assign(values.begin(), values.end());
     }
 
-    /// Tier 1: no stable free orbit at the operating frequency, no fold beside the edge beyond the margin, and the
-    /// motion from rest is the tuned one; where no fold is located (another kind of edge, a frequency that was given),
-    /// two more starts must lead to it too.
     void judge(const boundary::FreeOrbitsAt& free, const boundary::GrazingFold* fold) {
-        using FoldStatus = boundary::GrazingFold::Status;
-        Uniqueness& uniqueness = result_.uniqueness;
-        uniqueness.tier = 1;
-        for (const boundary::FreePoint& p : free.points) {
-            if (p.clearance < 0.0 && p.stable()) { add_free_attractor(p); }
-        }
-        const bool located =
-            fold != nullptr && (fold->status == FoldStatus::found || fold->status == FoldStatus::at_once);
-        if (uniqueness.attractors.empty()) { add_attractors_from_starts(located ? 1 : 3); }
-        if (!uniqueness.attractors.empty()) {
-            const bool clear = uniqueness.attractors.front().peak_force == 0.0;
-            reject(clear ? "a stable motion clear of the stop coexists at the operating frequency"
-                         : "another stable motion that strikes coexists at the operating frequency");
-        } else if (fold != nullptr && fold->status == FoldStatus::failed) {
-            uniqueness.checked = "tier 1: the fold beside the edge could not be located";
-        } else if (located && !(result_.operating_point.fold_offset <= problem_.margin)) {
-            reject("the fold beside the edge lies further below it than the margin");
-        } else if (!free.complete) {
-            uniqueness.checked = "tier 1: the free motion could not be followed below the operating frequency";
-        } else {
-            uniqueness.verdict = Verdict::unique;
-            uniqueness.checked =
-                located ? "tier 1: alone among the period-1 motions found (the free motion followed past the operating "
-                          "frequency, the fold beside the edge within the margin, the start from rest leads here); "
-                          "longer periods not searched"
-                        : "tier 1: alone among the period-1 motions found (the free motion followed past the operating "
-                          "frequency, three starts lead here, no fold located); longer periods not searched";
+        TierOne tier_one = check_tier_one(
+            {system_, scaled_.scales, orbit_, free, fold, result_.operating_point.fold_offset, problem_.margin});
+        result_.uniqueness = std::move(tier_one.uniqueness);
+        if (!tier_one.rejection.empty()) {
+            result_.status = EvaluationStatus::not_unique;
+            result_.reason = std::move(tier_one.rejection);
         }
         // The sampled tiers are not in this version: what was asked for has then not been checked.
-        if (problem_.single_stable > SingleStable::orbit && uniqueness.verdict == Verdict::unique) {
-            uniqueness.verdict = Verdict::not_checked;
+        if (problem_.single_stable > SingleStable::orbit && result_.uniqueness.verdict == Verdict::unique) {
+            result_.uniqueness.verdict = Verdict::not_checked;
         }
-    }
-
-    void add_free_attractor(const boundary::FreePoint& p) {
-        Attractor other;
-        other.period = 1;
-        other.state = to_user(p.state, scaled_.scales, system_.states());
-        other.peak_force = 0.0;
-        other.amplitude = scaled_.scales.length *
-                          (p.clearance + system_.stop_position() - system_.integrator->centre(system_.parameters));
-        other.max_multiplier = p.radius * p.radius;
-        result_.uniqueness.attractors.push_back(other);
-    }
-
-    /// From rest; from the stop at speed; from far behind. A stable period-1 orbit other than the accepted one refutes.
-    void add_attractors_from_starts(int count) {
-        const flow::State rest = system_.integrator->rest_state(system_.parameters);
-        const double gap = system_.stop_position() - system_.integrator->centre(system_.parameters);
-        const flow::State here = state_at_zero(system_, orbit_);
-        result_.uniqueness.starts = count;
-        for (int i = 0; i < count; ++i) {
-            flow::State start = rest;
-            if (i == 1) {
-                start[0] += 0.9 * gap;
-                start[1] = 2.0 * system_.omega() * gap;
-            } else if (i == 2) {
-                start[0] -= 3.0 * gap;
-            }
-            const auto found = stable_orbit_from(system_, start);
-            if (!found) { continue; }
-            const flow::State there = state_at_zero(system_, *found);
-            double distance = 0.0;
-            for (std::size_t k = 0; k < there.size(); ++k) {
-                distance = std::max(distance, std::abs(there[k] - here[k]));
-            }
-            if (distance < 1e-6) { continue; }
-            const orbit::Image image = orbit::apply(system_, found->map, found->state, orbit::Differentiate::nothing,
-                                                    {}, flow::observe_extrema | flow::observe_force);
-            Attractor other;
-            other.period = 1;
-            other.state = to_user(there, scaled_.scales, system_.states());
-            other.peak_force = scaled_.scales.force * image.observed[orbit::peak_force].value;
-            other.amplitude =
-                0.5 * scaled_.scales.length * (image.observed[orbit::x_max].value - image.observed[orbit::x_min].value);
-            other.max_multiplier = orbit::max_multiplier(*found);
-            result_.uniqueness.attractors.push_back(other);
-            return;
-        }
-    }
-
-    void reject(std::string_view why) {
-        result_.uniqueness.verdict = Verdict::not_unique;
-        result_.uniqueness.checked = "tier 1: " + std::string(why);
-        result_.status = EvaluationStatus::not_unique;
-        result_.reason = std::string(why);
     }
 
     Evaluation finish() {
