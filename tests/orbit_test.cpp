@@ -168,6 +168,10 @@ TEST_CASE("without the stop an orbit is its own mirror image half a period later
         CHECK(half.duration() == doctest::Approx(pi));
         const orbit::Image image = orbit::apply(system, half, full.state, orbit::Differentiate::nothing);
         CHECK(test::distance(image.state, full.state, 4) < 1e-12);
+        flow::Request still;
+        still.state = full.state;
+        still.stop = flow::StopMode::off;
+        CHECK(test::distance(image.rate, test::run(*integrator, system.parameters, still).rate, 4) < 1e-12);
         // The same orbit from half a cycle's map; its multipliers squared are those of the whole.
         const Orbit mirrored = orbit::find_orbit(system, half, *settled);
         REQUIRE(mirrored.ok());

@@ -289,7 +289,8 @@ TEST_CASE("a linear oscillator follows its closed form, free, held by the stop, 
         place.p[model::spring::cubic] = 0.0;
         place.p[model::spring::stop_stiffness] = random.uniform(5.0, 50.0);
         const bool held = trial % 2 == 1;
-        const double duration = random.uniform(0.1, 6.0) * (trial % 4 < 2 ? 1.0 : -1.0);
+        // The last ones take a single step.
+        const double duration = random.uniform(0.1, 6.0) * (trial % 4 < 2 ? 1.0 : -1.0) * (trial < 16 ? 1.0 : 1e-3);
         const auto& p = place.p;
         const Real c = p[0] + (held ? p[6] : 0.0);
         const Real k = p[1] + (held ? p[5] : 0.0);

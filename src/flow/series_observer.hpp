@@ -105,10 +105,7 @@ public:
     }
 
     void end(bool touching) {
-        if (touching) {
-            if ((mask_ & observe_force) != 0U) { contact_peak_.raise(force(), theta_); }  // may still be rising
-            close_contact(theta_, true);
-        }
+        if (touching) { close_contact(theta_, true); }
         if ((mask_ & observe_extrema) != 0U) {
             x_max_.raise(jet_.position(), theta_);
             negative_x_min_.raise(-jet_.position(), theta_);
