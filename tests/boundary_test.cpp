@@ -329,6 +329,35 @@ TEST_CASE("the edge of the defaults by the rule, and free motions that coexist b
     CHECK(lower.points[0].stable());
 }
 
+TEST_CASE("followed down through a resonance with low losses the free branch does not hop back to where it has been") {
+    // The branch of the torus point's design comes back from its upper loop steeply, past the point where the motion
+    // changes from anti-phase to in-phase: a long step there can land on the branch above the resonance.
+    ParameterVector p = paper_defaults;
+    p[model::membrane::voltage] = 0.232;
+    p[model::membrane::delta_a] = 0.022;
+    p[model::membrane::delta_b] = 390.0;
+    const auto integrator = membranes();
+    const flow::System system = system_of(*integrator, p);
+    boundary::FreeBranch branch(system);
+    REQUIRE(branch.start(4.0));
+    for (const double omega : {1.9, 1.85, 1.77}) {
+        CAPTURE(omega);
+        boundary::FreeBranch again(system);
+        REQUIRE(again.start(4.0));
+        const boundary::FreeOrbitsAt found = boundary::free_orbits_at(again, system, omega, 1.4);
+        CHECK(found.complete);
+        for (std::size_t i = 0; i < found.points.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                CHECK(test::distance(found.points[i].state, found.points[j].state, 4) > 1e-6);
+            }
+        }
+    }
+    int steps = 0;
+    while (branch.current().omega > 1.5 && steps < 100 && branch.advance()) { ++steps; }
+    CHECK(branch.current().omega < 1.5);
+    CHECK(steps < 100);
+}
+
 TEST_CASE("points that are not there") {
     const auto integrator = membranes();
     // Too little voltage ever to reach the stop.

@@ -127,6 +127,9 @@ bool FreeBranch::start(double omega) {
 }
 
 bool FreeBranch::advance() {
+    // A step longer than the motion is large could pass through rest, where the branches on either side of the
+    // resonance meet at small losses, and go on on the wrong one.
+    walker_.limit_step(std::max(0.5 * walker_.point().head(system_.states()).norm(), 0.2));
     if (!walker_.advance()) { return false; }
     const SmallVector from = to_scaled(current_.state, current_.omega);
     previous_ = current_;
