@@ -1,40 +1,19 @@
 #include "cli/verbs.hpp"
 
 #include "cli/exit_code.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #include "cli/session.hpp"
+#include "cli/stopping.hpp"
 #include "io/documents.hpp"
 #include "io/presentation.hpp"
 #include "io/problem_error.hpp"
 #include "io/result_tables.hpp"
 
-#include <chrono>
 #include <memory>
 
 namespace percuss::cli {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-using study::Ending;
-
-/// True once a signal has come or the time limit is over.
-study::StopRequest stop_request(const std::optional<double>& time_limit) {
-    const auto begun = Clock::now();
-    return [time_limit, begun] {
-        return interrupted() ||
-               (time_limit && std::chrono::duration<double>(Clock::now() - begun).count() >= *time_limit);
-    };
-}
-
-/// A study that was stopped cannot know by what: with a signal it was interrupted, without one its time was over.
-Ending told_apart(Ending ending) {
-    const bool unfinished =
-        ending == Ending::interrupted || ending == Ending::budget || ending == Ending::not_certified;
-    if (unfinished && interrupted()) { return Ending::interrupted; }
-    return ending == Ending::interrupted ? Ending::budget : ending;
-}
 
 std::vector<std::string> files_of_evaluation(bool gradients) {
     std::vector<std::string> files = {"result.json", "report.html", "quantities.csv"};

@@ -2,8 +2,8 @@
 
 #include "design/measure.hpp"
 #include "design/operating_point.hpp"
+#include "design/scene.hpp"
 #include "design/uniqueness.hpp"
-#include "kernels/kernels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,18 +18,7 @@ using model::Key;
 using model::Specification;
 using std::numbers::pi;
 
-/// The free branch is followed at this tolerance; everything found on it is refined at the problem's own.
-constexpr double scout_tolerance = 1e-8;
-
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
-std::optional<double> given_omega(const Specification& spec, const flow::Integrator& integrator,
-                                  const model::Scaled& scaled) {
-    const double omega = scaled.parameters[index(integrator.info().omega)];
-    const bool given = spec.has(Key::drive_frequency) || spec.has(Key::nd_omega) || spec.has(Key::sm_omega);
-    if (given) { return omega; }
-    return std::nullopt;
-}
 
 EdgeKind to_edge_kind(boundary::Kind kind) {
     switch (kind) {
@@ -42,38 +31,11 @@ EdgeKind to_edge_kind(boundary::Kind kind) {
     return EdgeKind::none;
 }
 
-flow::State from_user(const std::vector<double>& given, const model::Scales& scales, int states) {
-    if (given.size() != index(states)) {
-        throw std::invalid_argument("orbit.start has " + std::to_string(given.size()) + " entries: expected " +
-                                    std::to_string(states));
-    }
-    const std::vector<double> factors = state_scales(scales, states);
-    flow::State y{};
-    for (std::size_t k = 0; k < given.size(); ++k) {
-        if (!std::isfinite(given[k])) {
-            throw std::invalid_argument("orbit.start: every entry must be a finite number");
-        }
-        y[k] = given[k] / factors[k];
-    }
-    if (states > 2 && !(y[2] > 0.0 && y[3] > 0.0)) {
-        throw std::invalid_argument("orbit.start: the stretches xi_I and xi_II must be positive");
-    }
-    return y;
-}
-
-struct Integrators {
-    const flow::Integrator& own;
-    const flow::Integrator& tighter;
-    const flow::Integrator& scout;
-};
-
 }  // namespace
 
 struct Evaluator::Implementation {
     Problem problem;
-    std::unique_ptr<flow::Integrator> integrator;
-    std::unique_ptr<flow::Integrator> tighter;  ///< same scene, for error estimates
-    std::unique_ptr<flow::Integrator> scout;    ///< same scene, for finding the way; its errors reach no result
+    Scene scene;
 
     explicit Implementation(Problem p) : problem(std::move(p)) {
         model::validate(problem.actuator);
@@ -88,23 +50,7 @@ struct Evaluator::Implementation {
         if (!(problem.margin >= 0.0 && problem.margin < 0.5)) {
             throw std::invalid_argument("drive.margin: allowed is 0 % to 50 %");
         }
-        integrator = make(problem.solver.tolerance);
-        tighter = make(std::max(1e-16, 1e-2 * problem.solver.tolerance));
-        scout = make(std::max(scout_tolerance, problem.solver.tolerance));
-    }
-
-    [[nodiscard]] Integrators integrators() const { return {*integrator, *tighter, *scout}; }
-
-    [[nodiscard]] std::unique_ptr<flow::Integrator> make(double tolerance) const {
-        const Specification& spec = problem.actuator;
-        const model::Scaled scaled = model::scale(spec);
-        const bool viscous = model::actuator_kind(spec.family) == model::ActuatorKind::spring_mass ||
-                             scaled.parameters[model::membrane::mu_ratio] > 0.0;
-        kernels::IntegratorOptions options;
-        options.integrator = problem.solver.integrator;
-        options.instruction_set = problem.solver.instruction_set;
-        options.tolerance = tolerance;
-        return kernels::make_integrator(model::actuator_kind(spec.family), spec.law, viscous, options);
+        scene = make_scene(problem);
     }
 };
 
@@ -113,20 +59,20 @@ namespace {
 /// One evaluation under way.
 class Run {
 public:
-    Run(const Problem& problem, const Integrators& integrators, const Specification& actuator, const Demand& demand)
+    Run(const Problem& problem, const Scene& scene, const Specification& actuator, const Demand& demand)
         : problem_(problem),
           actuator_(actuator),
           demand_(demand),
           scaled_(model::scale(actuator)) {
-        system_ = {&integrators.own, scaled_.parameters, &cost_};
-        tighter_ = {&integrators.tighter, scaled_.parameters, &cost_};
-        scout_ = {&integrators.scout, scaled_.parameters, &cost_};
+        system_ = {scene.own.get(), scaled_.parameters, &cost_};
+        tighter_ = {scene.tighter.get(), scaled_.parameters, &cost_};
+        scout_ = {scene.scout.get(), scaled_.parameters, &cost_};
         result_.gradient_keys = demand.gradients;
         for (Key key : demand.gradients) { keys_.push_back(model::scale_derivative(actuator, key)); }
     }
 
     Evaluation evaluate() {
-        const auto given = given_omega(actuator_, *system_.integrator, scaled_);
+        const auto given = given_omega(actuator_, scaled_, *system_.integrator);
         if (given) {
             operate_at(*given);
         } else {
@@ -136,16 +82,16 @@ public:
     }
 
     Evaluation orbit(const std::optional<std::vector<double>>& start, int period) {
-        const auto given = given_omega(actuator_, *system_.integrator, scaled_);
+        const auto given = given_omega(actuator_, scaled_, *system_.integrator);
         if (!given) { throw std::invalid_argument("drive.frequency = edge: orbit needs a frequency as a number"); }
         if (period < 1 || period > 64) { throw std::invalid_argument("period: allowed is 1 to 64 drive cycles"); }
         set_given(*given);
         Reached reached;
         if (start) {
-            reached = from_start(from_user(*start, scaled_.scales, system_.states()), period);
+            reached = from_start(from_user(*start, "orbit.start", scaled_.scales, system_.states()), period);
         } else {
             reached = from_rest(period);
-            if (reached.orbit.ok()) { reached.orbit = start_with_longest_flight(system_, reached.orbit); }
+            if (reached.orbit.ok()) { reached.orbit = orbit::start_with_longest_flight(system_, reached.orbit); }
         }
         accept(reached);
         return finish();
@@ -157,12 +103,12 @@ private:
         tighter_ = tighter_.at_omega(omega);
         result_.operating_point.omega = omega;
         result_.operating_point.edge_kind = EdgeKind::given;
-        result_.operating_point.drive_frequency = omega / (2.0 * pi * scaled_.scales.time);
+        result_.operating_point.drive_frequency = drive_frequency(omega, scaled_.scales);
     }
 
     Reached from_start(const flow::State& y, int period) const {
         Reached reached;
-        reached.orbit = polish_orbit(system_, y, period);
+        reached.orbit = orbit::polish_orbit(system_, y, period);
         if (!reached.orbit.ok()) {
             reached.kind = Reached::Kind::unsettled;
             reached.reason = "Newton's method from orbit.start did not converge";
@@ -179,7 +125,7 @@ private:
         const flow::State rest = system_.integrator->rest_state(system_.parameters);
         Reached reached = reach_orbit(system_, rest, period, false);
         const auto fits = [&](const Reached& r) {
-            return r.kind == Reached::Kind::stable && minimal_period(system_, r.orbit) == period;
+            return r.kind == Reached::Kind::stable && orbit::minimal_period(system_, r.orbit) == period;
         };
         if (period == 1 || fits(reached)) { return reached; }
         std::mt19937_64 generator(1);
@@ -244,7 +190,7 @@ private:
         point.edge_kind = to_edge_kind(edge.boundary.kind);
         point.edge_omega = edge.boundary.omega;
         point.omega = operation.omega;
-        point.drive_frequency = operation.omega / (2.0 * pi * scaled_.scales.time);
+        point.drive_frequency = drive_frequency(operation.omega, scaled_.scales);
         result_.gradients.edge_omega = edge.boundary.d_omega;
         const std::size_t omega = index(system_.integrator->info().omega);
         for (std::size_t i = 0; i < keys_.size(); ++i) {
@@ -282,7 +228,7 @@ private:
 
     /// An orbit that repeats sooner than its map is one of the shorter period.
     void reduce_period(orbit::Orbit& orbit) const {
-        const int period = minimal_period(system_, orbit);
+        const int period = orbit::minimal_period(system_, orbit);
         if (period == orbit.map.period) { return; }
         orbit::ReturnMap map = orbit.map;
         map.period = period;
@@ -313,7 +259,7 @@ private:
         report.period = reached.orbit.map.period;
         report.contacts = static_cast<int>(reached.orbit.contacts.size());
         report.residual = measurement.portrait.residual;
-        report.state = to_user(state_at_zero(system_, reached.orbit), scales, system_.states());
+        report.state = to_user(orbit::state_at_zero(system_, reached.orbit), scales, system_.states());
         const auto& observed = measurement.portrait.image.observed;
         if ((observables_for(demand_.quantities) & flow::observe_extrema) != 0U) {
             report.x_max = scales.length * observed[orbit::x_max].value;
@@ -367,7 +313,7 @@ const Problem& Evaluator::problem() const { return implementation_->problem; }
 
 Evaluation Evaluator::evaluate(const Specification& actuator, const Demand& demand) const {
     model::validate(actuator);
-    return Run(implementation_->problem, implementation_->integrators(), actuator, demand).evaluate();
+    return Run(implementation_->problem, implementation_->scene, actuator, demand).evaluate();
 }
 
 Evaluation Evaluator::evaluate(const Demand& demand) const {
@@ -377,7 +323,7 @@ Evaluation Evaluator::evaluate(const Demand& demand) const {
 Evaluation Evaluator::orbit(const Specification& actuator, const std::optional<std::vector<double>>& start, int period,
                             const Demand& demand) const {
     model::validate(actuator);
-    return Run(implementation_->problem, implementation_->integrators(), actuator, demand).orbit(start, period);
+    return Run(implementation_->problem, implementation_->scene, actuator, demand).orbit(start, period);
 }
 
 }  // namespace percuss::design

@@ -5,6 +5,7 @@
 #include "boundary/edge.hpp"
 #include "flow/flow.hpp"
 #include "orbit/orbit.hpp"
+#include "orbit/polish.hpp"
 
 #include <optional>
 #include <span>
@@ -35,20 +36,6 @@ Reached reach_orbit(const flow::System& system, const flow::State& from, int per
 
 /// The stable orbit of one cycle that a start leads to, or nothing.
 std::optional<orbit::Orbit> stable_orbit_from(const flow::System& system, const flow::State& from);
-
-/// Newton from a state; the strobe phase is chosen away from contact. Low-speed contacts, where stroboscopic shooting
-/// has a corner, go through contact-sequence shooting.
-orbit::Orbit polish_orbit(const flow::System& system, const flow::State& from, int period);
-
-/// State of the orbit at phase 0.
-flow::State state_at_zero(const flow::System& system, const orbit::Orbit& orbit);
-
-/// The same orbit of several drive cycles, starting with the cycle that is followed by the longest flight: one of its
-/// strobe points, chosen the same way every time. Unchanged without contacts or for one cycle.
-orbit::Orbit start_with_longest_flight(const flow::System& system, const orbit::Orbit& orbit);
-
-/// Number of drive cycles after which the orbit really repeats: a divisor of its map's period.
-int minimal_period(const flow::System& system, const orbit::Orbit& orbit);
 
 /// The orbit continued from one frequency to another by Newton, steps halved on failure. Nothing when it is lost.
 std::optional<orbit::Orbit> continue_orbit(const flow::System& system, const orbit::Orbit& start, double to_omega);

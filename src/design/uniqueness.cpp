@@ -1,5 +1,7 @@
 #include "design/uniqueness.hpp"
 
+#include "design/scene.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -47,11 +49,11 @@ flow::State start_state(const flow::System& system, int i) {
 
 /// The first stable period-1 orbit other than the tuned one that one of the starts leads to.
 std::optional<Attractor> refute_by_starts(const UniquenessCase& c, int count) {
-    const flow::State here = state_at_zero(c.system, c.orbit);
+    const flow::State here = orbit::state_at_zero(c.system, c.orbit);
     for (int i = 0; i < count; ++i) {
         const auto found = stable_orbit_from(c.system, start_state(c.system, i));
         if (!found) { continue; }
-        const flow::State there = state_at_zero(c.system, *found);
+        const flow::State there = orbit::state_at_zero(c.system, *found);
         double distance = 0.0;
         for (std::size_t k = 0; k < there.size(); ++k) { distance = std::max(distance, std::abs(there[k] - here[k])); }
         if (distance > same_orbit) { return struck_attractor(c, *found, there); }
@@ -100,19 +102,6 @@ TierOne check_tier_one(const UniquenessCase& c) {
                         "frequency, three starts lead here, no fold located); longer periods not searched";
     }
     return result;
-}
-
-std::vector<double> state_scales(const model::Scales& scales, int states) {
-    std::vector<double> factors(static_cast<std::size_t>(states), 1.0);
-    factors[0] = scales.length;
-    factors[1] = scales.length / scales.time;
-    return factors;
-}
-
-std::vector<double> to_user(const flow::State& y, const model::Scales& scales, int states) {
-    std::vector<double> out = state_scales(scales, states);
-    for (std::size_t k = 0; k < out.size(); ++k) { out[k] *= y[k]; }
-    return out;
 }
 
 }  // namespace percuss::design

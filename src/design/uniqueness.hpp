@@ -31,9 +31,4 @@ struct TierOne {
 };
 TierOne check_tier_one(const UniquenessCase& c);
 
-/// A nondimensional state in the problem's units.
-std::vector<double> to_user(const flow::State& y, const model::Scales& scales, int states);
-/// Factor from nondimensional state to the problem's units, per entry.
-std::vector<double> state_scales(const model::Scales& scales, int states);
-
 }  // namespace percuss::design

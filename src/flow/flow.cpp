@@ -1,5 +1,6 @@
 #include "flow/flow.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <utility>
 
@@ -54,6 +55,24 @@ void System::run(const Request& request, Result& result) const {
         cost->phase += request.duration < 0.0 ? -request.duration : request.duration;
         cost->runs += 1;
         cost->steps += result.steps;
+    }
+}
+
+void Integrator::run_ensemble(const ParameterVector& parameters, const EnsembleRequest& request,
+                              std::span<EnsembleMember> members) const {
+    Request one;
+    one.theta = request.theta;
+    one.duration = request.duration;
+    one.stop = request.stop;
+    one.max_events = request.max_events;
+    one.max_steps = request.max_steps;
+    Result result;
+    for (std::size_t i = 0; i < request.states.size(); ++i) {
+        one.state = request.states[i];
+        run(parameters, one, result);
+        const auto entered = [](const Contact& contact) { return !contact.open_in; };
+        members[i] = {result.status, result.state,
+                      static_cast<int>(std::count_if(result.contacts.begin(), result.contacts.end(), entered))};
     }
 }
 

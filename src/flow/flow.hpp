@@ -126,6 +126,23 @@ void append_contact(Result& result, const Contact& contact);
 /// Sets everything but the contacts' storage back to what a fresh result holds.
 void reset(Result& result);
 
+/// Many starts of one system followed over the same phase; nothing is differentiated or observed.
+struct EnsembleRequest {
+    std::span<const State> states;
+    double theta = 0.0;
+    double duration = 0.0;  ///< in theta, positive
+    StopMode stop = StopMode::hybrid;
+    int max_events = 128;  ///< per start
+    long max_steps = 200000;
+};
+
+/// What became of one of them. Its numbers depend on that start alone, never on its neighbours.
+struct EnsembleMember {
+    Status status = Status::not_run;
+    State state{};     ///< at the end
+    int contacts = 0;  ///< entries met
+};
+
 /// Names and places of the parameters that the levels above must know by role, and the symmetry of the free system.
 struct SystemInfo {
     int states = 0;
@@ -155,6 +172,11 @@ public:
     /// Follows the flow over `request.duration`. Numerical trouble is a status in the result; a misused request
     /// (too many directions, negative hybrid duration) throws std::invalid_argument.
     virtual void run(const ParameterVector& parameters, const Request& request, Result& result) const = 0;
+
+    /// Follows every start of the request; `members` has as many entries. One after another unless the integrator has
+    /// something faster.
+    virtual void run_ensemble(const ParameterVector& parameters, const EnsembleRequest& request,
+                              std::span<EnsembleMember> members) const;
 
     /// Same integrator at another relative tolerance (dimensionless, 1e-16 < tolerance < 1e-2).
     [[nodiscard]] virtual double tolerance() const = 0;
