@@ -15,6 +15,8 @@ struct BoundaryPoint {
     Point point;
     std::size_t after = 0;     ///< it lies after this point of the branch
     double uncertainty = 0.0;  ///< of the parameter: the last Newton step, or the bracket where Newton did not converge
+    int contact = 0;           ///< grazing: which contact of the motion's sequence touches
+    double angle = 0.0;        ///< torus: argument of the multiplier
     int partner = -1;  ///< index of the boundary that makes one physical jump with it (a fold beside a grazing point)
     bool of_half_cycle = false;  ///< flip: multiplier -1 of the half-cycle map, that is loss of the mirror symmetry
 };
@@ -29,6 +31,7 @@ enum class End : std::uint8_t {
 
 struct Branch {
     int period = 1;
+    int from_branch = -1;  ///< index of the branch it leaves at a flip
     std::vector<Point> points;
     std::vector<BoundaryPoint> boundaries;
     End begin = End::not_run;  ///< how it ends before its first point

@@ -150,6 +150,8 @@ std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, co
     Corner corner;
     corner.at = near->point;
     corner.at.parameter = grazing.parameter;
+    corner.at.omega = family.at(grazing.parameter).omega();
+    corner.contact = contact;
     corner.uncertainty = 1e-12 * std::abs(grazing.parameter);
     const flow::System system = family.at(grazing.parameter);
     Motion rest = without(system, grazing.motion, contact, near->point);
@@ -183,6 +185,8 @@ std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, co
     Corner corner;
     corner.at = near->point;
     corner.at.parameter = grazing.parameter;
+    corner.at.omega = family.at(grazing.parameter).omega();
+    corner.contact = contact;
     corner.uncertainty = 1e-12 * std::abs(grazing.parameter);
     corner.before = {piece.scaled(*old_form, grazing.parameter), piece.slope(), std::move(before.point)};
     corner.onward = {near->point.motion, near->point.parameter, 1.0, {}};

@@ -12,6 +12,7 @@ namespace percuss::branch {
 struct Corner {
     Point at;  ///< the grazing motion
     double uncertainty = 0.0;
+    int contact = 0;  ///< which of the grazing motion's contacts touches
     /// Leaving: the sequence with the contact at a very small speed, in front of the corner. Its parameter is 0 where
     /// it could not be looked at.
     Standing near;

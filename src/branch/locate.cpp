@@ -95,6 +95,7 @@ BoundaryPoint locate(const flow::Family& family, Piece& piece, Kind kind, const 
             Look seen = look(family, critical.motion, critical.parameter);
             if (place_of(u, low.u, high.u).between() && seen.ok()) {
                 found.point = std::move(seen.point);
+                found.angle = critical.angle;
                 found.uncertainty = 1e-12 * std::abs(critical.parameter) + critical.residual * 1e-10;
                 return found;
             }

@@ -118,7 +118,7 @@ private:
         branch_.solves += 2;
         if (!corner) { return try_shorter("the grazing point where a contact ends could not be located"); }
         if (corner->near.point.parameter != 0.0) { note_boundaries(last_, corner->near); }
-        pass(*corner, Kind::grazing);
+        pass(*corner);
     }
 
     void enter(const Point& seen) {
@@ -129,13 +129,18 @@ private:
         branch_.solves += 2;
         if (!corner) { return try_shorter("the grazing point where a contact begins could not be located"); }
         note_boundaries(last_, corner->before);
-        pass(*corner, Kind::grazing);
+        pass(*corner);
     }
 
     /// Goes on behind a grazing point with the other form.
-    void pass(const Corner& corner, Kind kind) {
+    void pass(const Corner& corner) {
         branch_.points.push_back(corner.at);
-        record({kind, corner.at, 0, corner.uncertainty, -1, false});
+        BoundaryPoint found;
+        found.kind = Kind::grazing;
+        found.point = corner.at;
+        found.uncertainty = corner.uncertainty;
+        found.contact = corner.contact;
+        record(std::move(found));
         piece_ = std::make_unique<Piece>(family_, corner.onward.motion, options_.size, options_.steps);
         const bool started =
             corner.entering_contact >= 0
