@@ -15,9 +15,6 @@ constexpr int first_look = 16;
 constexpr int evenly_until = 64;
 /// Recurrences farther than this, in units of the box, are not worth a try.
 constexpr double near_recurrence = 1e-2;
-/// A motion on its way to a known orbit recurs no closer than about (1 - multiplier) times its distance from it; one
-/// that recurs this much closer is on its way to something else.
-constexpr double clearly_closer = 0.1;
 /// After a failure a start must recur this much closer before it is tried again.
 constexpr double closer_again = 0.25;
 /// Failures allowed at one look: chaos recurs often, and the most settled motions come first.
@@ -132,20 +129,15 @@ private:
         for (const Candidate& candidate : candidates) {
             if (failures >= failures_per_look) { return; }
             Track& track = tracks_[candidate.start];
-            if (candidate.recurrence.distance > closer_again * track.tried || !is_news(candidate)) { continue; }
-            if (!learn_from(track.history.back(), candidate.recurrence.period)) {
-                track.tried = candidate.recurrence.distance;
+            const Recurrence& recurrence = candidate.recurrence;
+            const bool is_worth_it =
+                recurrence.distance <= closer_again * track.tried && is_news(known_, recurrence, track.history.back());
+            if (!is_worth_it) { continue; }
+            if (!learn_from(track.history.back(), recurrence.period)) {
+                track.tried = recurrence.distance;
                 ++failures;
             }
         }
-    }
-
-    [[nodiscard]] bool is_news(const Candidate& candidate) const {
-        const flow::State& z = tracks_[candidate.start].history.back();
-        return std::all_of(known_.begin(), known_.end(), [&](const auto& known) {
-            const double lag = std::max(1.0 - known->trap.max_multiplier(), 1e-6);
-            return candidate.recurrence.distance < clearly_closer * lag * known->trap.distance(z);
-        });
     }
 
     bool learn_from(const flow::State& z, int period) {

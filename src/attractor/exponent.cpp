@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 namespace percuss::attractor {
 namespace {
@@ -71,6 +70,7 @@ void observe(const TangentRun& run, double& longest_flight, Wander& seen) {
         longest_flight = flight(result);
         seen.state = run.before();
     }
+    seen.strobes.push_back(result.state);
     ++seen.cycles;
 }
 

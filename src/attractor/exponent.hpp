@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <limits>
+#include <vector>
 
 namespace percuss::attractor {
 
@@ -42,6 +43,7 @@ struct Wander {
     double peak_force = 0.0;
     double contacts_per_cycle = 0.0;
     int cycles = 0;
+    std::vector<flow::State> strobes;  ///< one per cycle
 };
 
 /// Follows the motion from a state at theta = 0. `leave`, asked at every strobe, ends the run early. Throws

@@ -14,6 +14,9 @@ constexpr double same_point = 1e-5;
 /// A recurrence this many times farther than the nearest one may still be that of the true, shorter period.
 constexpr double nearly_as_close = 4.0;
 
+/// How much closer than expected on the way to a known orbit a motion must recur to be on its way elsewhere.
+constexpr double clearly_closer = 0.1;
+
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double distance(const flow::State& a, const flow::State& b, int states, const flow::State& scale) {
@@ -55,6 +58,13 @@ std::optional<int> find_known(const KnownOrbits& known, const KnownOrbit& orbit)
     const auto same = [&](const auto& other) { return same_orbit(*other, orbit); };
     const auto found = std::find_if(known.begin(), known.end(), same);
     return found == known.end() ? std::nullopt : std::optional<int>(static_cast<int>(found - known.begin()));
+}
+
+bool is_news(const KnownOrbits& known, const Recurrence& recurrence, const flow::State& z) {
+    return std::all_of(known.begin(), known.end(), [&](const auto& orbit) {
+        const double lag = std::max(1.0 - orbit->trap.max_multiplier(), 1e-6);
+        return recurrence.distance < clearly_closer * lag * orbit->trap.distance(z);
+    });
 }
 
 Recurrence recurrence(std::span<const flow::State> history, int states, const flow::State& scale, int shortest,

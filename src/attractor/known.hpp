@@ -45,6 +45,10 @@ struct Recurrence {
     double distance = 0.0;  ///< in units of the scale
 };
 
+/// Whether a motion that recurs like this, now at z, is on its way to something else than the known orbits: on the way
+/// to one of them it would recur no closer than about (1 - multiplier) times its distance from it.
+bool is_news(const KnownOrbits& known, const Recurrence& recurrence, const flow::State& z);
+
 /// The shortest of the recurrences after `shortest` to `longest` cycles that come close to the nearest of them. The
 /// history is in the order of time, its last entry now.
 Recurrence recurrence(std::span<const flow::State> history, int states, const flow::State& scale, int shortest,

@@ -4,6 +4,7 @@
 /// unclassified.
 
 #include "attractor/block.hpp"
+#include "attractor/cloud.hpp"
 #include "attractor/motion.hpp"
 
 #include <vector>
@@ -12,7 +13,7 @@ namespace percuss::attractor {
 
 struct LeftoverOptions {
     int longest_period = 64;  ///< Newton's method is tried up to this period
-    int most_aperiodic = 8;   ///< motions told apart; starts beyond stay unclassified
+    int most_runs = 16;       ///< motions followed on for their exponent; what needs more stays unclassified
     ExponentOptions exponent{};
 };
 
@@ -29,29 +30,32 @@ public:
         int orbit = -1;      ///< a known periodic orbit,
         int aperiodic = -1;  ///< or an aperiodic motion, or neither: unclassified
     };
-    /// First a known orbit that the motion is settling on, or a new one of long period; then an aperiodic motion met
-    /// before whose strobed states it mixes with; then a run of its own, in which it may still be captured after all,
-    /// and whose exponent decides.
-    ///
-    /// Two strobed histories of the same length are of one motion when the median distance from a point of one to the
-    /// nearest of the other is, both ways, at most twice the median distance to the nearest other point of its own: for
-    /// samples of one invariant set both medians estimate the same number.
+    /// First a known orbit that the motion is settling on, or a new one of long period; then a motion followed before
+    /// on whose strobed states it lies; then a run of its own, in which it may still be captured after all, and whose
+    /// exponent decides. A run that lies on the strobed states of an aperiodic motion met before is that motion.
     Verdict judge(const std::vector<flow::State>& history);
 
     [[nodiscard]] const std::vector<Motion>& aperiodic() const { return aperiodic_; }
 
 private:
+    /// Where a motion that was followed on has been, and what it was.
+    struct Path {
+        Cloud cloud;
+        Verdict verdict;
+    };
     [[nodiscard]] std::optional<int> settling_on(const std::vector<flow::State>& history) const;
     [[nodiscard]] std::optional<int> long_period(const std::vector<flow::State>& history);
-    [[nodiscard]] std::optional<int> met_before(const std::vector<flow::State>& history) const;
+    [[nodiscard]] std::optional<Verdict> on_a_path(const std::vector<flow::State>& strobes) const;
     Verdict follow_on(const std::vector<flow::State>& history);
+    Verdict recognise(const Wander& seen, const std::vector<flow::State>& history);
 
     const Systems& systems_;
     flow::State scale_;
     KnownOrbits& known_;
     const LeftoverOptions& options_;
     std::vector<Motion> aperiodic_;
-    std::vector<std::vector<flow::State>> clouds_;  ///< strobed states of each aperiodic motion
+    std::vector<Path> paths_;
+    int runs_ = 0;
 };
 
 }  // namespace percuss::attractor
