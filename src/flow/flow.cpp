@@ -35,6 +35,8 @@ double Integrator::stop_position_derivative(const ParameterVector& p, const Para
     return centre_derivative(p, dp) + dp[static_cast<std::size_t>(info().gap)];
 }
 
+StateRange Integrator::internal_range(const ParameterVector&, double) const { return {}; }
+
 double Cost::periods() const { return phase / (2.0 * std::numbers::pi); }
 
 System System::at_omega(double omega) const {

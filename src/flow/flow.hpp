@@ -157,6 +157,13 @@ struct SystemInfo {
     std::array<int, max_states> mirror{};
     bool observes_membranes = false;  ///< peak_field and peak_current exist
     bool releases_on_force = false;   ///< contact ends when the force has gone to zero (no-tension law)
+    bool has_stop = true;             ///< false: the law is "none", gap and stiffness mean nothing
+};
+
+/// Lower and upper ends of an interval for every state.
+struct StateRange {
+    State lower{};
+    State upper{};
 };
 
 /// An integrator of one hybrid system. Stateless: may be shared between threads.
@@ -189,6 +196,9 @@ public:
 
     /// The system at rest, undriven: a start for anything.
     [[nodiscard]] virtual State rest_state(const ParameterVector& p) const = 0;
+    /// Where the states beyond x and x' stay while |x - centre| <= reach; the entries of x and x' are zero, as is
+    /// everything for a system that has no other states.
+    [[nodiscard]] virtual StateRange internal_range(const ParameterVector& p, double reach) const;
     /// Natural frequency of small motions about rest at the mean drive, viscous states frozen, nondimensional rad.
     [[nodiscard]] virtual double linear_resonance(const ParameterVector& p) const = 0;
 };

@@ -41,6 +41,9 @@ public:
         return rhs_->centre_derivative(p, dp);
     }
     [[nodiscard]] State rest_state(const ParameterVector& p) const override { return rhs_->rest_state(p); }
+    [[nodiscard]] StateRange internal_range(const ParameterVector& p, double reach) const override {
+        return rhs_->internal_range(p, reach);
+    }
     [[nodiscard]] double linear_resonance(const ParameterVector& p) const override { return rhs_->linear_resonance(p); }
 
 protected:

@@ -95,6 +95,9 @@ public:
     [[nodiscard]] flow::State rest_state(const flow::ParameterVector& p) const override {
         return plain_->rest_state(p);
     }
+    [[nodiscard]] flow::StateRange internal_range(const flow::ParameterVector& p, double reach) const override {
+        return plain_->internal_range(p, reach);
+    }
     [[nodiscard]] double linear_resonance(const flow::ParameterVector& p) const override {
         return plain_->linear_resonance(p);
     }

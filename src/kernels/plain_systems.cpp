@@ -64,6 +64,13 @@ struct Membranes {
         const double stretch = p[model::membrane::lambda_p] * std::sqrt(1.0 + 0.25 * l * l);
         return {0.5 * l, 0.0, stretch, stretch};
     }
+    /// The stretch xi relaxes towards lambda_1 = lambda_p sqrt(1 + u^2) of its membrane, u = x or x - l.
+    static flow::StateRange internal_range(const ParameterVector& p, double reach) {
+        const double furthest = 0.5 * p[model::membrane::length] + reach;
+        const double lower = p[model::membrane::lambda_p];
+        const double upper = lower * std::sqrt(1.0 + furthest * furthest);
+        return {{0.0, 0.0, lower, lower}, {0.0, 0.0, upper, upper}};
+    }
     /// Stiffness of both membranes about rest for a given phi^2, dashpots of the Maxwell branches locked.
     static double stiffness(const ParameterVector& values, double phi_squared) {
         using T = ForwardLanes<1>;
@@ -114,6 +121,7 @@ struct ElasticMembranes : Membranes {
     }
     static bool meaningful(const State& y) { return Membranes::meaningful(filled(y.data())); }
     static State rest_state(const ParameterVector& p) { return {Membranes::centre(p), 0.0, 0.0, 0.0}; }
+    static flow::StateRange internal_range(const ParameterVector&, double) { return {}; }
 };
 
 struct Spring {
@@ -148,6 +156,7 @@ struct Spring {
     static bool meaningful(const State& y) { return std::abs(y[0]) < 1e12 && std::abs(y[1]) < 1e12; }
     static double centre(const ParameterVector&) { return 0.0; }
     static State rest_state(const ParameterVector&) { return {}; }
+    static flow::StateRange internal_range(const ParameterVector&, double) { return {}; }
     /// sqrt(k1); for a double well the frequency in a well, for a purely cubic spring the one (describing function,
     /// 3/4 k3 A^2) at the static amplitude A = (F/k3)^(1/3); 1 when nothing restores the mass.
     static double linear_resonance(const ParameterVector& p) {
@@ -188,6 +197,7 @@ class PlainSystem final : public flow::RightHandSide {
 public:
     explicit PlainSystem(flow::ContactLaw law) : info_(Model::info()), law_(law) {
         info_.releases_on_force = law == flow::ContactLaw::no_tension;
+        info_.has_stop = law != flow::ContactLaw::none;
     }
 
     [[nodiscard]] const flow::SystemInfo& info() const override { return info_; }
@@ -195,6 +205,9 @@ public:
     [[nodiscard]] int sides() const override { return Model::sides; }
     [[nodiscard]] bool meaningful(const State& state) const override { return Model::meaningful(state); }
     [[nodiscard]] State rest_state(const ParameterVector& p) const override { return Model::rest_state(p); }
+    [[nodiscard]] flow::StateRange internal_range(const ParameterVector& p, double reach) const override {
+        return Model::internal_range(p, reach);
+    }
     [[nodiscard]] double linear_resonance(const ParameterVector& p) const override {
         return Model::linear_resonance(p);
     }

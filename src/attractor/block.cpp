@@ -1,0 +1,188 @@
+#include "attractor/block.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace percuss::attractor {
+namespace {
+
+using std::numbers::pi;
+
+/// Newton's method is tried at these cycles and then each half as many cycles later.
+constexpr int first_look = 16;
+constexpr int evenly_until = 64;
+/// Recurrences farther than this, in units of the box, are not worth a try.
+constexpr double near_recurrence = 1e-2;
+/// After a failure a start must recur this much closer before it is tried again.
+constexpr double closer_again = 0.25;
+/// Failures allowed at one look: chaos recurs often, and the most settled motions come first.
+constexpr int failures_per_look = 6;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+int next_look(int cycle) { return cycle < evenly_until ? cycle + first_look : cycle + cycle / 2; }
+
+class BlockRun {
+public:
+    BlockRun(const Systems& systems, const Box& box, std::span<const flow::State> starts, const KnownOrbits& known,
+             const FollowOptions& options)
+        : exact_{systems.exact},
+          scout_{systems.scout},
+          options_(options),
+          scale_(half_widths(box, systems.exact.states())),
+          known_before_(known.size()),
+          known_(known) {
+        for (const auto& orbit : known_) { traps_.push_back(&orbit->trap); }
+        exact_.cost = &cost_;
+        scout_.cost = &cost_;
+        result_.followers.resize(starts.size());
+        tracks_.resize(starts.size());
+        for (std::size_t i = 0; i < starts.size(); ++i) {
+            live_.push_back(i);
+            states_.push_back(starts[i]);
+            tracks_[i].history.push_back(starts[i]);
+        }
+    }
+
+    BlockResult run() {
+        int look = first_look;
+        int cycle = 0;
+        while (!live_.empty() && cycle < options_.max_cycles) {
+            advance();
+            ++cycle;
+            if (cycle < look) { continue; }
+            if (options_.stop_requested && options_.stop_requested()) {
+                result_.stopped = true;
+                break;
+            }
+            search();
+            if (options_.stop_at_new && known_.size() > known_before_) { break; }
+            look = next_look(cycle);
+        }
+        return finish();
+    }
+
+private:
+    struct Track {
+        std::vector<flow::State> history;  ///< up to twice the memory, the oldest half dropped when full
+        Watch watch;
+        double tried = std::numeric_limits<double>::infinity();  ///< recurrence distance of the last failure
+    };
+    struct Candidate {
+        Recurrence recurrence;
+        std::size_t start = 0;
+    };
+
+    /// One cycle of all live starts; captured and failed ones leave.
+    void advance() {
+        flow::EnsembleRequest request;
+        request.states = states_;
+        request.duration = 2.0 * pi;
+        members_.assign(states_.size(), {});
+        scout_.integrator->run_ensemble(scout_.parameters, request, members_);
+        cost_.phase += request.duration * static_cast<double>(states_.size());
+        std::size_t kept = 0;
+        for (std::size_t slot = 0; slot < live_.size(); ++slot) {
+            const std::size_t i = live_[slot];
+            Follower& follower = result_.followers[i];
+            take(members_[slot], follower, tracks_[i]);
+            if (follower.fate != Fate::pending) { continue; }
+            live_[kept] = i;
+            states_[kept] = members_[slot].state;
+            ++kept;
+        }
+        live_.resize(kept);
+        states_.resize(kept);
+    }
+
+    void take(const flow::EnsembleMember& member, Follower& follower, Track& track) const {
+        if (member.status != flow::Status::ok) {
+            follower.fate = Fate::failed;
+            return;
+        }
+        if (const auto trap = track.watch.see(member.state, traps_)) {
+            follower.fate = Fate::captured;
+            follower.orbit = *trap;
+            return;
+        }
+        auto& history = track.history;
+        const std::size_t memory = index(options_.memory);
+        if (history.size() >= 2 * memory) {
+            history.erase(history.begin(), history.end() - static_cast<std::ptrdiff_t>(memory));
+        }
+        history.push_back(member.state);
+    }
+
+    /// Newton's method on the motions that nearly recur, the most settled ones first.
+    void search() {
+        std::vector<Candidate> candidates;
+        for (const std::size_t i : live_) {
+            const Recurrence r = recurrence(tracks_[i].history, scout_.states(), scale_, 1, options_.longest_period);
+            if (r.period > 0 && r.distance < near_recurrence) { candidates.push_back({r, i}); }
+        }
+        std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+            return a.recurrence.distance < b.recurrence.distance;
+        });
+        int failures = 0;
+        for (const Candidate& candidate : candidates) {
+            if (failures >= failures_per_look) { return; }
+            Track& track = tracks_[candidate.start];
+            const Recurrence& recurrence = candidate.recurrence;
+            const bool is_worth_it =
+                recurrence.distance <= closer_again * track.tried && is_news(known_, recurrence, track.history.back());
+            if (!is_worth_it) { continue; }
+            if (!learn_from(track.history.back(), recurrence.period)) {
+                track.tried = recurrence.distance;
+                ++failures;
+            }
+        }
+    }
+
+    bool learn_from(const flow::State& z, int period) {
+        const auto orbit = stable_orbit(exact_, z, period);
+        if (!orbit) { return false; }
+        auto learnt = make_known({exact_, scout_}, *orbit, scale_);
+        if (find_known(known_, *learnt)) { return false; }
+        known_.push_back(std::move(learnt));
+        traps_.push_back(&known_.back()->trap);
+        return true;
+    }
+
+    BlockResult finish() {
+        for (const std::size_t i : live_) {
+            result_.followers[i].fate = Fate::unsettled;
+            auto& history = tracks_[i].history;
+            const std::size_t excess = history.size() - std::min(history.size(), index(options_.memory));
+            history.erase(history.begin(), history.begin() + static_cast<std::ptrdiff_t>(excess));
+            result_.followers[i].history = std::move(history);
+        }
+        result_.found.assign(known_.begin() + static_cast<std::ptrdiff_t>(known_before_), known_.end());
+        result_.cycles = cost_.periods();
+        return std::move(result_);
+    }
+
+    flow::Cost cost_;
+    flow::System exact_;
+    flow::System scout_;
+    const FollowOptions& options_;
+    flow::State scale_;
+    std::size_t known_before_;
+    KnownOrbits known_;  ///< before, then found
+    std::vector<const Trap*> traps_;
+    BlockResult result_;
+    std::vector<Track> tracks_;        ///< of every start
+    std::vector<std::size_t> live_;    ///< starts still followed,
+    std::vector<flow::State> states_;  ///< and where they are
+    std::vector<flow::EnsembleMember> members_;
+};
+
+}  // namespace
+
+BlockResult follow_block(const Systems& systems, const Box& box, std::span<const flow::State> starts,
+                         const KnownOrbits& known, const FollowOptions& options) {
+    return BlockRun(systems, box, starts, known, options).run();
+}
+
+}  // namespace percuss::attractor

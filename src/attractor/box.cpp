@@ -1,0 +1,124 @@
+#include "attractor/box.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace percuss::attractor {
+namespace {
+
+using std::numbers::pi;
+
+constexpr std::uint64_t golden_gamma = 0x9e3779b97f4a7c15U;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+/// The finaliser of splitmix64.
+std::uint64_t mix(std::uint64_t z) {
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+    return z ^ (z >> 31U);
+}
+
+/// Output number `counter` of splitmix64, as a number in [0, 1).
+double uniform(std::uint64_t seed, std::uint64_t counter) {
+    const std::uint64_t bits = mix(mix(seed + golden_gamma) + (counter + 1) * golden_gamma);
+    return static_cast<double>(bits >> 11U) * 0x1.0p-53;
+}
+
+/// Half the stroke over the last cycles of a motion, zero when it cannot be followed.
+double settled_amplitude(const flow::System& system, const flow::State& from) {
+    constexpr int cycles = 256;
+    constexpr int last = 16;
+    flow::Request request;
+    request.state = from;
+    request.duration = 2.0 * pi * (cycles - last);
+    request.max_events = 64 * cycles;
+    flow::Result result;
+    system.run(request, result);
+    if (result.status != flow::Status::ok) { return 0.0; }
+    request.state = result.state;
+    request.duration = 2.0 * pi * last;
+    request.observe = flow::observe_extrema;
+    system.run(request, result);
+    if (result.status != flow::Status::ok) { return 0.0; }
+    return 0.5 * (result.observables.x_max.value - result.observables.x_min.value);
+}
+
+}  // namespace
+
+Box ensemble_box(const flow::System& system, double amplitude) {
+    if (!(amplitude >= 0.0 && std::isfinite(amplitude))) {
+        throw std::invalid_argument("ensemble box: amplitude = " + std::to_string(amplitude) +
+                                    ": allowed is at least 0");
+    }
+    if (!(system.omega() > 0.0)) {
+        throw std::invalid_argument("ensemble box: omega = " + std::to_string(system.omega()) + ": allowed is above 0");
+    }
+    const bool has_stop = system.integrator->info().has_stop;
+    const double centre = system.integrator->centre(system.parameters);
+    const double gap = system.stop_position() - centre;
+    const double size = has_stop ? std::max(gap, amplitude) : amplitude;
+    if (!(size > 0.0 && std::isfinite(size))) {
+        throw std::invalid_argument("ensemble box: neither the gap nor the amplitude is above 0");
+    }
+    const double reach = 2.0 * size;
+    const flow::StateRange internal = system.integrator->internal_range(system.parameters, reach);
+    Box box{internal.lower, internal.upper};
+    box.lower[0] = centre - reach;
+    box.upper[0] = centre + (has_stop ? gap : reach);
+    box.lower[1] = -reach * system.omega();
+    box.upper[1] = reach * system.omega();
+    return box;
+}
+
+double amplitude_to_expect(const flow::System& system) {
+    const flow::State rest = system.integrator->rest_state(system.parameters);
+    const double from_rest = settled_amplitude(system, rest);
+    double largest = from_rest;
+    if (system.integrator->info().has_stop) { return largest; }
+    for (const double times : {4.0, 8.0, 16.0, 32.0}) {
+        flow::State away = rest;
+        away[0] -= times * from_rest;
+        largest = std::max(largest, settled_amplitude(system, away));
+    }
+    return largest;
+}
+
+void validate(const Box& box, int states) {
+    bool has_room = false;
+    for (int k = 0; k < states; ++k) {
+        const double lower = box.lower[index(k)];
+        const double upper = box.upper[index(k)];
+        if (!(std::isfinite(lower) && std::isfinite(upper) && lower <= upper)) {
+            throw std::invalid_argument("ensemble box: state " + std::to_string(k + 1) + " from " +
+                                        std::to_string(lower) + " to " + std::to_string(upper) +
+                                        ": allowed are finite numbers in this order");
+        }
+        has_room = has_room || lower < upper;
+    }
+    if (!has_room) { throw std::invalid_argument("ensemble box: every interval has length 0"); }
+}
+
+flow::State half_widths(const Box& box, int states) {
+    flow::State widths{};
+    for (int k = 0; k < states; ++k) {
+        const double half = 0.5 * (box.upper[index(k)] - box.lower[index(k)]);
+        widths[index(k)] = half > 0.0 ? half : 1.0;
+    }
+    return widths;
+}
+
+flow::State start_state(const Box& box, int states, std::uint64_t seed, long i) {
+    flow::State y{};
+    const auto first = static_cast<std::uint64_t>(i) * flow::max_states;
+    for (int k = 0; k < states; ++k) {
+        const double share = uniform(seed, first + static_cast<std::uint64_t>(k));
+        y[index(k)] = box.lower[index(k)] + share * (box.upper[index(k)] - box.lower[index(k)]);
+    }
+    return y;
+}
+
+}  // namespace percuss::attractor

@@ -1,0 +1,274 @@
+#include "attractor/ensemble.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+namespace percuss::attractor {
+namespace {
+
+using Starts = std::vector<flow::State>;
+
+std::size_t index(long i) { return static_cast<std::size_t>(i); }
+
+void check(const Systems& systems, const Box& box, const EnsembleOptions& options,
+           std::span<const orbit::Orbit> given) {
+    validate(box, systems.exact.states());
+    const auto require = [](bool good, const char* name, long value, const char* allowed) {
+        if (!good) {
+            throw std::invalid_argument(std::string("ensemble: ") + name + " = " + std::to_string(value) +
+                                        ": allowed is " + allowed);
+        }
+    };
+    require(options.starts >= 1, "starts", options.starts, "at least 1");
+    require(options.jobs >= 1, "jobs", options.jobs, "at least 1");
+    require(options.max_cycles >= 1, "max_cycles", options.max_cycles, "at least 1");
+    require(options.longest_period >= 1, "longest_period", options.longest_period, "at least 1");
+    for (const orbit::Orbit& orbit : given) {
+        if (!orbit.ok() || !(orbit::max_multiplier(orbit) < 1.0)) {
+            throw std::invalid_argument("ensemble: an orbit given as known must be converged and stable");
+        }
+    }
+}
+
+/// Runs work(0), ..., work(count - 1) on some threads, each number once; rethrows the first exception.
+template <class Work>
+void in_parallel(long count, int jobs, const Work& work) {
+    std::atomic<long> next{0};
+    std::exception_ptr failure;
+    std::mutex guard;
+    const auto worker = [&] {
+        try {
+            for (long i = next++; i < count; i = next++) { work(i); }
+        } catch (...) {
+            const std::lock_guard lock(guard);
+            if (!failure) { failure = std::current_exception(); }
+            next = count;
+        }
+    };
+    std::vector<std::thread> threads;
+    for (long t = 1; t < std::min<long>(jobs, count); ++t) { threads.emplace_back(worker); }
+    worker();
+    for (std::thread& thread : threads) { thread.join(); }
+    if (failure) { std::rethrow_exception(failure); }
+}
+
+/// The blocks of an ensemble.
+class Blocks {
+public:
+    Blocks(const Systems& systems, const Box& box, const EnsembleOptions& options, bool stop_at_new)
+        : systems_(systems),
+          box_(box),
+          options_(options) {
+        follow_.max_cycles = options.max_cycles;
+        follow_.longest_period = options.longest_period;
+        follow_.stop_at_new = stop_at_new;
+        follow_.stop_requested = options.stop_requested;
+    }
+
+    [[nodiscard]] long count() const { return (options_.starts + block_size - 1) / block_size; }
+    [[nodiscard]] long size(long block) const { return std::min<long>(block_size, options_.starts - first(block)); }
+    [[nodiscard]] static long first(long block) { return block * block_size; }
+
+    BlockResult follow(long block, const KnownOrbits& known) {
+        Starts starts;
+        for (long i = first(block); i < first(block) + size(block); ++i) {
+            starts.push_back(start_state(box_, systems_.exact.states(), options_.seed, i));
+        }
+        BlockResult result = follow_block(systems_, box_, starts, known, follow_);
+        if (options_.on_progress) {
+            const std::lock_guard lock(guard_);
+            options_.on_progress(static_cast<double>(++done_) / static_cast<double>(count()));
+        }
+        return result;
+    }
+
+private:
+    const Systems& systems_;
+    const Box& box_;
+    const EnsembleOptions& options_;
+    FollowOptions follow_;
+    std::mutex guard_;
+    long done_ = 0;
+};
+
+/// Systems that count their work in a place of their own.
+struct CountedSystems {
+    flow::Cost cost;
+    flow::System exact;
+    flow::System scout;
+    Systems systems{exact, scout};
+
+    explicit CountedSystems(const Systems& from) : exact(from.exact), scout(from.scout) {
+        exact.cost = &cost;
+        scout.cost = &cost;
+    }
+    CountedSystems(const CountedSystems&) = delete;
+    CountedSystems& operator=(const CountedSystems&) = delete;
+};
+
+/// Numbers of a block's orbits (those known before it, then those found) in the list of all.
+std::vector<int> put_together(const BlockResult& block, std::size_t known_before, KnownOrbits& all) {
+    std::vector<int> numbers;
+    for (std::size_t i = 0; i < known_before; ++i) { numbers.push_back(static_cast<int>(i)); }
+    for (const auto& orbit : block.found) {
+        auto number = find_known(all, *orbit);
+        if (!number) {
+            number = static_cast<int>(all.size());
+            all.push_back(orbit);
+        }
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+void count_shares(Ensemble& ensemble) {
+    for (const int motion : ensemble.led_to) {
+        if (motion >= 0) { ++ensemble.motions[index(motion)].starts; }
+    }
+    if (ensemble.starts == 0) { return; }
+    for (Motion& motion : ensemble.motions) { motion.share = share_of(motion.starts, ensemble.starts); }
+    ensemble.missed_share_bound = share_bound(ensemble.unclassified, ensemble.starts);
+}
+
+}  // namespace
+
+Ensemble find_motions(const Systems& systems, const Box& box, const EnsembleOptions& options,
+                      std::span<const orbit::Orbit> given) {
+    check(systems, box, options, given);
+    CountedSystems counted(systems);
+    const flow::State scale = half_widths(box, systems.exact.states());
+    Ensemble ensemble;
+    ensemble.box = box;
+
+    KnownOrbits known;
+    for (const orbit::Orbit& orbit : given) { known.push_back(make_known(counted.systems, orbit, scale)); }
+    const std::size_t given_count = known.size();
+    Blocks blocks(systems, box, options, false);
+    std::vector<BlockResult> results(index(blocks.count()));
+    results[0] = blocks.follow(0, known);
+    known.insert(known.end(), results[0].found.begin(), results[0].found.end());
+    const std::size_t common = known.size();
+    in_parallel(blocks.count() - 1, options.jobs, [&](long i) { results[index(i + 1)] = blocks.follow(i + 1, known); });
+
+    KnownOrbits all = known;
+    struct Leftover {
+        std::size_t start;
+        const std::vector<flow::State>* history;
+    };
+    std::vector<Leftover> leftovers;
+    for (std::size_t b = 0; b < results.size(); ++b) {
+        const BlockResult& block = results[b];
+        ensemble.cycles += block.cycles;
+        if (block.stopped) {
+            ensemble.status = Ensemble::Status::stopped;
+            continue;
+        }
+        const auto numbers = put_together(block, b == 0 ? given_count : common, all);
+        for (const Follower& follower : block.followers) {
+            if (follower.fate == Fate::unsettled) { leftovers.push_back({ensemble.led_to.size(), &follower.history}); }
+            if (follower.fate == Fate::failed) { ++ensemble.failed; }
+            ensemble.led_to.push_back(follower.fate == Fate::captured ? numbers[index(follower.orbit)] : -1);
+        }
+    }
+    ensemble.starts = static_cast<long>(ensemble.led_to.size());
+
+    LeftoverJudge judge(counted.systems, box, all, options.leftovers);
+    std::vector<std::pair<std::size_t, int>> aperiodic;
+    for (const Leftover& leftover : leftovers) {
+        if (options.stop_requested && options.stop_requested()) {
+            ensemble.status = Ensemble::Status::stopped;
+            break;
+        }
+        const LeftoverJudge::Verdict verdict = judge.judge(*leftover.history);
+        ensemble.led_to[leftover.start] = verdict.orbit;
+        if (verdict.aperiodic >= 0) { aperiodic.emplace_back(leftover.start, verdict.aperiodic); }
+    }
+    for (const auto& orbit : all) { ensemble.motions.push_back(measure(counted.exact, orbit->orbit)); }
+    for (const auto& [start, motion] : aperiodic) { ensemble.led_to[start] = static_cast<int>(all.size()) + motion; }
+    ensemble.motions.insert(ensemble.motions.end(), judge.aperiodic().begin(), judge.aperiodic().end());
+
+    ensemble.unclassified = std::count(ensemble.led_to.begin(), ensemble.led_to.end(), -1);
+    ensemble.cycles += counted.cost.periods();
+    count_shares(ensemble);
+    if (ensemble.status == Ensemble::Status::not_run) { ensemble.status = Ensemble::Status::done; }
+    return ensemble;
+}
+
+namespace {
+
+/// What one block has to say against the given orbit, which is number 0 of what is known.
+struct Objection {
+    std::optional<Motion> other;
+    long unclassified = 0;
+    double cycles = 0.0;
+    bool stopped = false;
+};
+
+Objection object(const Systems& systems, const Box& box, BlockResult block, const KnownOrbits& known,
+                 const EnsembleOptions& options) {
+    CountedSystems counted(systems);
+    Objection objection;
+    objection.stopped = block.stopped;
+    KnownOrbits all = known;
+    all.insert(all.end(), block.found.begin(), block.found.end());
+    LeftoverJudge judge(counted.systems, box, all, options.leftovers);
+    for (const Follower& follower : block.followers) {
+        if (block.stopped || all.size() > known.size() || !judge.aperiodic().empty()) { break; }
+        if (follower.fate == Fate::failed) { ++objection.unclassified; }
+        if (follower.fate != Fate::unsettled) { continue; }
+        const auto verdict = judge.judge(follower.history);
+        if (verdict.orbit < 0 && verdict.aperiodic < 0) { ++objection.unclassified; }
+    }
+    if (all.size() > known.size()) {
+        objection.other = measure(counted.exact, all[known.size()]->orbit);
+    } else if (!judge.aperiodic().empty()) {
+        objection.other = judge.aperiodic().front();
+    }
+    objection.cycles = block.cycles + counted.cost.periods();
+    return objection;
+}
+
+}  // namespace
+
+Refutation refute(const Systems& systems, const orbit::Orbit& given, const Box& box, const EnsembleOptions& options) {
+    check(systems, box, options, {&given, 1});
+    CountedSystems counted(systems);
+    Refutation refutation;
+    refutation.box = box;
+    const KnownOrbits known = {make_known(counted.systems, given, half_widths(box, systems.exact.states()))};
+    refutation.cycles = counted.cost.periods();
+    Blocks blocks(systems, box, options, true);
+    for (long begun = 0; begun < blocks.count(); begun += options.jobs) {
+        const long together = std::min<long>(options.jobs, blocks.count() - begun);
+        std::vector<Objection> objections(index(together));
+        in_parallel(together, options.jobs, [&](long i) {
+            objections[index(i)] = object(systems, box, blocks.follow(begun + i, known), known, options);
+        });
+        for (long i = 0; i < together; ++i) {
+            Objection& objection = objections[index(i)];
+            refutation.cycles += objection.cycles;
+            if (objection.stopped) {
+                refutation.status = Refutation::Status::stopped;
+                return refutation;
+            }
+            refutation.starts += blocks.size(begun + i);
+            refutation.unclassified += objection.unclassified;
+            if (objection.other) {
+                refutation.status = Refutation::Status::refuted;
+                refutation.other = std::move(objection.other);
+                return refutation;
+            }
+        }
+    }
+    refutation.missed_share_bound = share_bound(refutation.unclassified, refutation.starts);
+    refutation.status = refutation.unclassified == 0 ? Refutation::Status::not_refuted : Refutation::Status::undecided;
+    return refutation;
+}
+
+}  // namespace percuss::attractor
