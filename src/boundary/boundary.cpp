@@ -125,6 +125,17 @@ Test evaluate(const Problem& problem, const SmallVector& y, double omega, const 
 
 }  // namespace
 
+std::string_view to_string(Kind kind) {
+    switch (kind) {
+        case Kind::none: return "none";
+        case Kind::grazing: return "grazing";
+        case Kind::fold: return "fold";
+        case Kind::flip: return "flip";
+        case Kind::torus: return "torus";
+    }
+    return "none";
+}
+
 orbit::Observed clearance(const flow::System& system, const orbit::ReturnMap& map, const orbit::Image& image,
                           std::span<const flow::ParameterVector> directions) {
     const double centre = system.integrator->centre(system.parameters);

@@ -8,6 +8,7 @@
 #include "orbit/return_map.hpp"
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace percuss::boundary {
@@ -19,6 +20,8 @@ enum class Kind : std::uint8_t {
     flip,     ///< multiplier -1; of the half-cycle map of the free system: loss of the mirror symmetry
     torus,    ///< a complex pair of multipliers of modulus 1 (Neimark-Sacker)
 };
+
+std::string_view to_string(Kind kind);
 
 enum class SolveStatus : std::uint8_t { not_run, converged, no_convergence, flow_failed };
 

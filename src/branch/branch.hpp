@@ -5,6 +5,7 @@
 #include "branch/point.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace percuss::branch {
@@ -16,7 +17,8 @@ struct BoundaryPoint {
     std::size_t after = 0;     ///< it lies after this point of the branch
     double uncertainty = 0.0;  ///< of the parameter: the last Newton step, or the bracket where Newton did not converge
     int contact = 0;           ///< grazing: which contact of the motion's sequence touches
-    double angle = 0.0;        ///< torus: argument of the multiplier
+    flow::State state_at_zero{};  ///< of the motion, at phase 0 of the drive
+    double angle = 0.0;           ///< torus: argument of the multiplier
     int partner = -1;  ///< index of the boundary that makes one physical jump with it (a fold beside a grazing point)
     bool of_half_cycle = false;  ///< flip: multiplier -1 of the half-cycle map, that is loss of the mirror symmetry
 };
@@ -24,10 +26,13 @@ struct BoundaryPoint {
 enum class End : std::uint8_t {
     not_run,
     range,   ///< left the range of the parameter
+    joined,  ///< reached, at a flip or a grazing point, a branch of shorter period
     closed,  ///< came back to its start: an isola
     lost,    ///< could not be followed further
     budget,  ///< as many points as were allowed, or stopped from outside
 };
+
+std::string_view to_string(End end);
 
 struct Branch {
     int period = 1;

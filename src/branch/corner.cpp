@@ -121,6 +121,27 @@ std::pair<Motion, int> with_contact(const flow::System& system, const Motion& mo
     return {more, index};
 }
 
+/// The strobe phase, moved by whole cycles to lie before the first contact of the sequence.
+double latest_phase_before(const Motion& motion, double phase) {
+    const double first = motion.sequence.contacts.front().phase;
+    return phase + 2.0 * pi * std::floor((first - phase) / (2.0 * pi));
+}
+
+/// The grazing motion in the form that it had without the contact.
+std::optional<Motion> old_form_at(const flow::System& system, const Motion& old_form, const Motion& grazing,
+                                  int contact) {
+    if (old_form.form == Form::sequence) {
+        Motion motion = grazing;
+        motion.sequence.contacts.erase(motion.sequence.contacts.begin() + contact);
+        return motion;
+    }
+    Motion motion = old_form;
+    const auto state = orbit::state_at(system, grazing.sequence, latest_phase_before(grazing, old_form.phase));
+    if (!state) { return std::nullopt; }
+    motion.state = *state;
+    return orbit::solve(system, motion);
+}
+
 }  // namespace
 
 int contact_leaving(const Motion& motion) {
@@ -144,6 +165,8 @@ std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, co
     const auto grazing = boundary::solve_critical(family, Kind::grazing, piece.motion_of(guess),
                                                   piece.parameter_of(guess), contact, 0.0, options.size);
     if (!grazing.ok()) { return std::nullopt; }
+    const Vector found = piece.scaled(grazing.motion, grazing.parameter);
+    if (!place_of(found, last.u, piece.point()).between()) { return std::nullopt; }
     auto near = stand_near(family, grazing.motion, grazing.parameter, contact, options);
     if (!near) { return std::nullopt; }
     near->slope = -near->slope;  // travelled towards lower speed
@@ -157,6 +180,13 @@ std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, co
     Motion rest = without(system, grazing.motion, contact, near->point);
     const auto solved = orbit::solve(system, rest);
     if (!solved) { return std::nullopt; }
+    if (solved->form == Form::free && solved->period > 1) {
+        orbit::Orbit free;
+        free.map.stop = flow::StopMode::off;
+        free.map.period = solved->period;
+        free.state = solved->state;
+        corner.shorter_period = orbit::minimal_period(system, free) < solved->period;
+    }
     const auto direction = real_side(family, *solved, grazing.parameter, options, piece.slope() < 0.0 ? -1.0 : 1.0);
     if (!direction) { return std::nullopt; }
     corner.near = std::move(*near);
@@ -172,14 +202,12 @@ std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, co
     if (!grazing.ok()) { return std::nullopt; }
     auto near = stand_near(family, grazing.motion, grazing.parameter, contact, options);
     if (!near) { return std::nullopt; }
-    // The old form at the grazing point, between the last point and the one beyond.
-    const double way = seen.parameter - last.point.parameter;
-    const double share = way != 0.0 ? (grazing.parameter - last.point.parameter) / way : 1.0;
-    if (!(share > -0.5 && share < 1.5)) { return std::nullopt; }
-    const Vector between = last.u + share * (piece.point() - last.u);
+    // The old form at the grazing point must lie between the last point and the one beyond.
     const flow::System system = family.at(grazing.parameter);
-    const auto old_form = orbit::solve(system, piece.motion_of(between));
+    const auto old_form = old_form_at(system, seen.motion, grazing.motion, contact);
     if (!old_form) { return std::nullopt; }
+    const Vector found = piece.scaled(*old_form, grazing.parameter);
+    if (!place_of(found, last.u, piece.point()).between()) { return std::nullopt; }
     Look before = look(family, *old_form, grazing.parameter);
     if (before.status == Look::Status::flow_failed) { return std::nullopt; }
     Corner corner;
@@ -188,7 +216,7 @@ std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, co
     corner.at.omega = family.at(grazing.parameter).omega();
     corner.contact = contact;
     corner.uncertainty = 1e-12 * std::abs(grazing.parameter);
-    corner.before = {piece.scaled(*old_form, grazing.parameter), piece.slope(), std::move(before.point)};
+    corner.before = {found, piece.slope(), std::move(before.point)};
     corner.onward = {near->point.motion, near->point.parameter, 1.0, {}};
     corner.entering_contact = contact;
     return corner;

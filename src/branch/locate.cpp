@@ -34,12 +34,7 @@ double test_value(const Standing& at, Kind kind) {
     }
 }
 
-/// Where a point lies between two others: share of the way, distance from the straight line in units of its length.
-struct Place {
-    double share = 0.0;
-    double aside = 0.0;
-    [[nodiscard]] bool between() const { return share > -0.1 && share < 1.1 && aside < 0.5; }
-};
+}  // namespace
 
 Place place_of(const Vector& u, const Vector& a, const Vector& b) {
     const Vector chord = b - a;
@@ -49,8 +44,6 @@ Place place_of(const Vector& u, const Vector& a, const Vector& b) {
     place.aside = (u - a - place.share * chord).norm() / length;
     return place;
 }
-
-}  // namespace
 
 double lowest_speed(const orbit::Motion& motion) {
     if (motion.form != orbit::Form::sequence) { return 1.0; }

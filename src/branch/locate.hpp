@@ -25,6 +25,14 @@ std::vector<boundary::Kind> boundaries_between(const Standing& a, const Standing
 BoundaryPoint locate(const flow::Family& family, Piece& piece, boundary::Kind kind, const Standing& a,
                      const Standing& b, double size, long& solves);
 
+/// Where a point lies between two others: share of the way, distance from the straight line in units of its length.
+struct Place {
+    double share = 0.0;
+    double aside = 0.0;
+    [[nodiscard]] bool between() const { return share > -0.1 && share < 1.1 && aside < 0.5; }
+};
+Place place_of(const numerics::Vector& u, const numerics::Vector& a, const numerics::Vector& b);
+
 /// The smallest entry speed of a sequence, 1 for other forms: fold tests are divided by it, see boundary/critical.hpp.
 double lowest_speed(const orbit::Motion& motion);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace percuss::branch {
 namespace {
@@ -43,16 +44,27 @@ private:
     }
 
     bool depart(const Departure& d) {
-        renew_piece(d.motion);
-        const bool started = d.off.size() > 0 ? piece_->start_off(d.motion, d.parameter, d.off, departure_distance)
-                                              : piece_->start(d.motion, d.parameter, d.direction);
-        ++branch_.solves;
-        if (!started || !stand_here()) {
+        if (!set_out(d)) {
             lose("Newton's method found no motion to start from");
             return false;
         }
         branch_.points.push_back(last_.point);
         return true;
+    }
+
+    bool set_out(const Departure& d) {
+        renew_piece(d.motion);
+        ++branch_.solves;
+        if (d.off.size() == 0) { return piece_->start(d.motion, d.parameter, d.direction) && stand_here(); }
+        // Beside a grazing point the new branch itself grazes close by: then a smaller distance is needed.
+        for (double distance = departure_distance; distance > 1e-7; distance *= 0.1) {
+            if (piece_->start_off(d.motion, d.parameter, d.off, distance) && stand_here()) {
+                piece_->set_step(distance);
+                return true;
+            }
+            ++branch_.solves;
+        }
+        return false;
     }
 
     /// One step along the piece and what it brings: another point, a contact that leaves or enters, or trouble.
@@ -74,6 +86,10 @@ private:
     }
 
     void accept(Standing here) {
+        if (joins(last_, here)) {
+            branch_.end = End::joined;
+            return;
+        }
         note_boundaries(last_, here);
         last_ = std::move(here);
         branch_.points.push_back(last_.point);
@@ -96,6 +112,7 @@ private:
     }
 
     void record(BoundaryPoint found) {
+        found.state_at_zero = state_at_zero(family_.at(found.point.parameter), found.point);
         found.after = branch_.points.empty() ? 0 : branch_.points.size() - 1;
         branch_.boundaries.push_back(std::move(found));
     }
@@ -141,6 +158,10 @@ private:
         found.uncertainty = corner.uncertainty;
         found.contact = corner.contact;
         record(std::move(found));
+        if (corner.shorter_period) {
+            branch_.end = End::joined;
+            return;
+        }
         piece_ = std::make_unique<Piece>(family_, corner.onward.motion, options_.size, options_.steps);
         const bool started =
             corner.entering_contact >= 0
@@ -202,6 +223,24 @@ private:
     }
 
     // ---- shape of the whole
+
+    /// Whether both halves of a motion of even period have become the same, or changed places, during the step.
+    [[nodiscard]] bool joins(const Standing& a, const Standing& b) const {
+        const Motion& motion = b.point.motion;
+        if (motion.form != Form::sequence || branch_.period % 2 != 0 || motion.contacts() % 2 != 0 ||
+            a.u.size() != b.u.size() || branch_.points.size() < 2) {
+            return false;
+        }
+        const auto half = (b.u.size() - 1) / 2;
+        numerics::Vector before = a.u.head(half) - a.u.segment(half, half);
+        numerics::Vector now = b.u.head(half) - b.u.segment(half, half);
+        const int block = motion.sequence.unknowns_per_contact(family_.base);
+        for (Eigen::Index at = 1; at < half; at += block) {  // entry phases: the later half is as many cycles later
+            before[at] += std::numbers::pi * branch_.period;
+            now[at] += std::numbers::pi * branch_.period;
+        }
+        return before.dot(now) <= 0.0 || now.norm() < 1e-7;
+    }
 
     /// Whether the last step passed the first point again, in the same direction.
     [[nodiscard]] bool closes() const {

@@ -2,6 +2,7 @@
 
 #include "io/nearest_name.hpp"
 #include "io/problem_error.hpp"
+#include "io/setting_table.hpp"
 #include "model/units.hpp"
 
 #include <algorithm>
@@ -22,8 +23,9 @@ constexpr std::array verb_table = {
     VerbInfo{"force-displacement", "quasi-static curve of one membrane", false},
     VerbInfo{"sweep", "forward and backward frequency sweeps in the time domain", true},
     VerbInfo{"orbit", "the periodic orbit at one frequency: state, multipliers, quantities", true},
-    VerbInfo{"branch", "continuation in the drive frequency or a design variable", false},
-    VerbInfo{"locus", "follow a boundary in two parameters", false},
+    VerbInfo{"branch", "continuation in the drive frequency or a design variable: hysteresis map, all boundaries",
+             true},
+    VerbInfo{"locus", "follow a boundary in two parameters", true},
     VerbInfo{"attractors", "every stable motion found at one operating point", false},
     VerbInfo{"evaluate", "one design: operating point, quantities, uniqueness", true},
     VerbInfo{"explore", "a table over the design space", false},
@@ -42,14 +44,17 @@ constexpr std::array option_table = {
     OptionInfo{"quiet", "", "no progress and no remarks on stderr", ""},
     OptionInfo{"force", "", "replace the results of an unfinished run", ""},
     OptionInfo{"help", "", "describe the options and keys", ""},
-    OptionInfo{"gradients", "", "also the derivatives of all quantities", "evaluate orbit"},
-    OptionInfo{"period", "N", "short for --orbit.period", "orbit simulate"},
+    OptionInfo{"gradients", "", "also the derivatives of what was found", "evaluate orbit branch"},
+    OptionInfo{"period", "N", "short for --orbit.period or --branch.period", "orbit simulate branch"},
     OptionInfo{"start", "STATE", "short for --simulate.start", "simulate"},
     OptionInfo{"cycles", "N", "short for --simulate.cycles", "simulate"},
     OptionInfo{"kick", "TEXT", "short for --simulate.kick", "simulate"},
-    OptionInfo{"from", "F", "short for --sweep.from", "sweep"},
-    OptionInfo{"to", "F", "short for --sweep.to", "sweep"},
-    OptionInfo{"steps", "N", "short for --sweep.steps", "sweep"},
+    OptionInfo{"from", "VALUE", "short for --VERB.from", "sweep branch locus"},
+    OptionInfo{"to", "VALUE", "short for --VERB.to", "sweep branch locus"},
+    OptionInfo{"steps", "N", "short for --VERB.steps", "sweep locus"},
+    OptionInfo{"along", "KEY", "short for --VERB.along", "branch locus"},
+    OptionInfo{"boundary", "KIND", "short for --locus.boundary", "locus"},
+    OptionInfo{"starts", "N", "short for --VERB.starts", "branch"},
     OptionInfo{"chirp", "", "short for --sweep.mode chirp", "sweep"},
 };
 
@@ -118,14 +123,12 @@ void apply(const Setting& option, Arguments& arguments) {
         arguments.help = true;
     } else if (option.key == "gradients") {
         arguments.gradients = true;
-    } else if (option.key == "period") {
-        arguments.keys.push_back({"orbit.period", option.value, true});
-    } else if (option.key == "start" || option.key == "cycles" || option.key == "kick") {
-        arguments.keys.push_back({"simulate." + option.key, option.value, true});
-    } else if (option.key == "from" || option.key == "to" || option.key == "steps") {
-        arguments.keys.push_back({"sweep." + option.key, option.value, true});
     } else if (option.key == "chirp") {
         arguments.keys.push_back({"sweep.mode", "chirp", true});
+    } else {
+        const std::string own = arguments.verb + "." + option.key;  // the verb's section, or that of orbits
+        const bool has_own = io::find_setting(own) != nullptr;
+        arguments.keys.push_back({has_own ? own : "orbit." + option.key, option.value, true});
     }
 }
 

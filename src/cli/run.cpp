@@ -37,6 +37,8 @@ int run_verb(const Arguments& arguments) {
     if (arguments.verb == "sweep") { return sweep(arguments); }
     if (arguments.verb == "orbit") { return orbit(arguments); }
     if (arguments.verb == "evaluate") { return evaluate(arguments); }
+    if (arguments.verb == "branch") { return branch(arguments); }
+    if (arguments.verb == "locus") { return locus(arguments); }
     if (arguments.verb == "optimise") { return optimise(arguments); }
     throw std::logic_error("verb " + arguments.verb + " is offered but not there");
 }

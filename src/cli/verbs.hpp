@@ -13,5 +13,7 @@ int sweep(const Arguments& arguments);
 int orbit(const Arguments& arguments);
 int evaluate(const Arguments& arguments);
 int optimise(const Arguments& arguments);
+int branch(const Arguments& arguments);
+int locus(const Arguments& arguments);
 
 }  // namespace percuss::cli

@@ -58,6 +58,8 @@ ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting>
     read_orbit(settings, design.actuator.family, problem.orbit, troubles);
     read_simulate(settings, design.actuator.family, problem.simulate, troubles);
     read_sweep(settings, design.actuator.family, problem.sweep, troubles);
+    read_branch(settings, design.actuator, problem.branch, troubles);
+    read_locus(settings, design.actuator, problem.locus, troubles);
     model::apply_defaults(design.actuator);
     fill_in_variables(design);
     check_values(design, use, troubles);
@@ -83,6 +85,26 @@ void require_frequency(const ProblemFile& problem) {
         throw ProblemError(std::string(plain ? "nondimensional.omega" : "drive.frequency") +
                            " = edge: an orbit is computed at a given frequency, give one");
     }
+}
+
+void require_locus_range(const ProblemFile& problem) {
+    const study::LocusStudy& locus = problem.locus;
+    if (!locus.along) {
+        throw ProblemError("locus.along is missing: give the key to vary besides the drive frequency, as in --along "
+                           "stop.gap");
+    }
+    if (!locus.from || !locus.to) {
+        throw ProblemError(std::string(locus.from ? "locus.to" : "locus.from") +
+                           " is missing: give both ends of the "
+                           "range of " +
+                           std::string(model::key_info(*locus.along).name));
+    }
+}
+
+int problem_states(const ProblemFile& problem) {
+    return model::actuator_kind(problem.study.design.actuator.family) == model::ActuatorKind::spring_mass
+             ? model::spring::states
+             : model::membrane::states;
 }
 
 void require_one_objective(const ProblemFile& problem) {

@@ -4,6 +4,8 @@
 
 #include "io/settings.hpp"
 #include "model/specification.hpp"
+#include "study/branch.hpp"
+#include "study/locus.hpp"
 #include "study/orbit.hpp"
 #include "study/simulate.hpp"
 #include "study/study.hpp"
@@ -36,6 +38,8 @@ struct ProblemFile {
     study::OrbitStudy orbit;
     study::SimulateStudy simulate;
     study::SweepStudy sweep;
+    study::BranchStudy branch;
+    study::LocusStudy locus;
     std::vector<ResolvedSetting> settings;  ///< every key in force, section by section
     std::vector<std::string> troubles;      ///< all that is wrong; always empty from read_problem
 };
@@ -56,6 +60,10 @@ ProblemFile inspect_problem(const std::filesystem::path& file, std::span<const S
 /// Throw ProblemError when the problem lacks what a verb needs: a drive frequency; variables and one objective.
 void require_frequency(const ProblemFile& problem);
 void require_one_objective(const ProblemFile& problem);
+void require_locus_range(const ProblemFile& problem);
+
+/// Number of entries of a state.
+int problem_states(const ProblemFile& problem);
 
 /// Identifies the resolved problem: FNV-1a (64 bit) over its settings in force, 16 hexadecimal digits.
 std::string problem_hash(const ProblemFile& problem);

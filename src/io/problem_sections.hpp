@@ -4,6 +4,8 @@
 
 #include "design/problem.hpp"
 #include "io/setting_list.hpp"
+#include "study/branch.hpp"
+#include "study/locus.hpp"
 #include "study/orbit.hpp"
 #include "study/simulate.hpp"
 #include "study/study.hpp"
@@ -38,6 +40,12 @@ std::string kick_text(const study::Kick& kick, model::Family family);
 
 /// Numbers in a state of this family.
 std::size_t states_of(model::Family family);
+
+/// [branch] and [locus]; the actuator has been read.
+void read_branch(const SettingList& settings, const model::Specification& spec, study::BranchStudy& study,
+                 Troubles& troubles);
+void read_locus(const SettingList& settings, const model::Specification& spec, study::LocusStudy& study,
+                Troubles& troubles);
 
 /// A number for this key of this family: plain for nondimensional keys, else with an optional unit. Throws
 /// std::invalid_argument.

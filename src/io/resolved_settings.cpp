@@ -4,7 +4,9 @@
 #include "model/number_text.hpp"
 #include "model/units.hpp"
 
+#include "study/branch_setup.hpp"
 #include <algorithm>
+
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -86,6 +88,7 @@ public:
         number("orbit.period", problem_.orbit.period, "");
         simulate_keys(problem_.simulate, design.actuator.family);
         sweep_keys(problem_.sweep, design.actuator.family);
+        branch_keys();
         return std::move(resolved_);
     }
 
@@ -139,6 +142,26 @@ private:
         number("sweep.max_cycles", study.max_cycles, "");
         number("sweep.longest_period", study.longest_period, "");
         number("sweep.chirp_cycles", study.chirp_cycles, "");
+    }
+
+    void branch_keys() {
+        const study::BranchStudy& branch = problem_.branch;
+        const Key along = branch.along.value_or(study::frequency_key(problem_.study.design.actuator));
+        if (branch.along) { text("branch.along", std::string(model::key_info(along).name)); }
+        if (branch.from) { number("branch.from", *branch.from, model::key_info(along).unit); }
+        if (branch.to) { number("branch.to", *branch.to, model::key_info(along).unit); }
+        number("branch.period", branch.period, "");
+        number("branch.starts", branch.starts, "");
+        number("branch.max_points", branch.max_points, "");
+        const study::LocusStudy& locus = problem_.locus;
+        text("locus.boundary", std::string(boundary::to_string(locus.kind)));
+        if (locus.along) {
+            text("locus.along", std::string(model::key_info(*locus.along).name));
+            if (locus.from) { number("locus.from", *locus.from, model::key_info(*locus.along).unit); }
+            if (locus.to) { number("locus.to", *locus.to, model::key_info(*locus.along).unit); }
+        }
+        number("locus.steps", locus.steps, "");
+        number("locus.max_points", locus.max_points, "");
     }
 
     void number(const std::string& name, double value, std::string_view unit) {

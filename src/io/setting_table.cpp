@@ -3,6 +3,8 @@
 #include "design/problem.hpp"
 #include "model/number_text.hpp"
 #include "optimise/solve.hpp"
+#include "study/branch.hpp"
+#include "study/locus.hpp"
 #include "study/orbit.hpp"
 #include "study/simulate.hpp"
 #include "study/study.hpp"
@@ -71,6 +73,28 @@ void add_sweep_keys(std::vector<SettingInfo>& table) {
                      "drive cycles of a chirp in each direction"});
 }
 
+void add_branch_keys(std::vector<SettingInfo>& table) {
+    const study::BranchStudy branch;
+    const study::LocusStudy locus;
+    table.push_back({"branch.along", "", "a key of the actuator", "the drive frequency", "what is varied"});
+    table.push_back({"branch.from", "", "a value of that key", "3 linear resonance", "start of the range"});
+    table.push_back({"branch.to", "", "a value of that key", "0.6 linear resonance", "end of the range"});
+    table.push_back({"branch.period", "", "whole number, at least 1", std::to_string(branch.period),
+                     "also branches of motions of up to this many drive cycles"});
+    table.push_back({"branch.starts", "", "whole number, at least 0", std::to_string(branch.starts),
+                     "starts of the search for such motions, at each frequency it looks at"});
+    table.push_back({"branch.max_points", "", "whole number, at least 2", std::to_string(branch.max_points),
+                     "most points of a branch"});
+    table.push_back({"locus.boundary", "", "fold | flip | torus | grazing", "fold", "kind of boundary to follow"});
+    table.push_back({"locus.along", "", "a key of the actuator", "none", "what is varied besides the drive frequency"});
+    table.push_back({"locus.from", "", "a value of that key", "none", "start of the range"});
+    table.push_back({"locus.to", "", "a value of that key", "none", "end of the range"});
+    table.push_back({"locus.steps", "", "whole number, at least 1", std::to_string(locus.steps),
+                     "about so many round values of the key are among the points"});
+    table.push_back({"locus.max_points", "", "whole number, at least 2", std::to_string(locus.max_points),
+                     "most points of a curve"});
+}
+
 std::vector<SettingInfo> make_table() {
     const design::Problem problem;
     const study::OptimiserOptions optimiser;
@@ -122,6 +146,7 @@ std::vector<SettingInfo> make_table() {
                      "period of the orbit in drive cycles"});
     add_simulate_keys(table);
     add_sweep_keys(table);
+    add_branch_keys(table);
     return table;
 }
 

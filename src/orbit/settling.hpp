@@ -11,8 +11,8 @@ namespace percuss::orbit {
 
 /// What must fall below the tolerance before a motion counts as settled.
 enum class SettlingRule : std::uint8_t {
-    strobed_change,  ///< the change itself, the rule usual in practice: with a multiplier rho it stops change
-                     ///< rho/(1-rho) short of the orbit, and a slow passage passes for an orbit
+    strobed_change,   ///< the change itself, the rule usual in practice: with a multiplier rho it stops change
+                      ///< rho/(1-rho) short of the orbit, and a slow passage passes for an orbit
     remaining_error,  ///< the change, and the error that remains, change rho/(1-rho) with the contraction rho observed
 };
 

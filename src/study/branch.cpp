@@ -95,7 +95,18 @@ private:
     }
 
     void follow_attractors() {
-        for (const auto& found : find_motions_along(setup_, study_, observer_, stop_)) {
+        // Where the main branch has its boundaries, and somewhat around; it strikes nowhere else.
+        double low = std::min(setup_.from, setup_.to);
+        double high = std::max(setup_.from, setup_.to);
+        const auto& boundaries = result_.branches.front().boundaries;
+        if (setup_.along_frequency && !boundaries.empty()) {
+            const auto [first, last] =
+                std::minmax_element(boundaries.begin(), boundaries.end(),
+                                    [](const auto& a, const auto& b) { return a.point.parameter < b.point.parameter; });
+            low = std::max(low, 0.9 * first->point.parameter);
+            high = std::min(high, 1.1 * last->point.parameter);
+        }
+        for (const auto& found : find_motions_along(setup_, study_, low, high, observer_, stop_)) {
             if (stopped()) { return; }
             const branch::Look seen = branch::look(setup_.family, found.motion, found.parameter);
             if (!seen.ok() || known(seen.point)) { continue; }

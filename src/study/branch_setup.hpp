@@ -41,13 +41,13 @@ struct BranchSetup {
     flow::Family family;
 };
 
-/// Stable motions of more than one drive cycle found by ensembles of starts at frequencies (or values) over the range;
-/// only at the problem's own frequency where one is given.
+/// Stable periodic motions, up to the longest period wanted, that ensembles of starts lead to at 32 places between two
+/// values of the parameter; only at the problem's own frequency where one is given. In the order of the places.
 struct FoundMotion {
     orbit::Motion motion;
     double parameter = 0.0;
 };
-std::vector<FoundMotion> find_motions_along(const BranchSetup& setup, const BranchStudy& study,
+std::vector<FoundMotion> find_motions_along(const BranchSetup& setup, const BranchStudy& study, double low, double high,
                                             const Observer& observer, const StopRequest& stop);
 
 /// The key that sets the drive frequency in this problem.

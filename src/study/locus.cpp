@@ -27,7 +27,9 @@ std::vector<double> round_values(double from, double to, int count) {
     }
     std::vector<double> values;
     const double inside = 1e-9 * (high - low);
-    for (double k = std::ceil((low + inside) / step); k * step < high - inside; k += 1.0) { values.push_back(k * step); }
+    for (double k = std::ceil((low + inside) / step); k * step < high - inside; k += 1.0) {
+        values.push_back(k * step);
+    }
     return values;
 }
 
