@@ -146,7 +146,7 @@ Block directions_block(const ProblemFile& problem, const study::SweepStudyResult
                              [](const SweepPoint& a, const SweepPoint& b) { return a.peak_force < b.peak_force; });
         const auto settled = std::count_if(direction.points.begin(), direction.points.end(),
                                            [](const SweepPoint& point) { return point.settled; });
-        const bool any = largest != direction.points.end();
+        const bool any = largest != direction.points.end() && largest->peak_force > 0.0;
         block.rows.push_back({std::string(direction_of(direction)), std::to_string(direction.points.size()),
                               is_chirp(problem) ? "-" : std::to_string(settled),
                               any ? text_of(problem, Quantity::peak_force, largest->peak_force) : "-",

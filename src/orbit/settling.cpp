@@ -68,11 +68,18 @@ bool is_settled(const Settling& settling, const SettlingOptions& options) {
     return options.rule == SettlingRule::strobed_change || settling.remaining_error <= options.tolerance;
 }
 
-/// A motion of period d close to a multiplier -1 settles as one of period 2 d first. Both states are within the
-/// tolerance of the orbit then, so that a change of a few times the tolerance over d cycles means period d.
+/// A motion of period d that rotates about its orbit (multipliers near a p-th root of unity) repeats to the tolerance
+/// after p cycles before it does after d. It is told from one of period p by its changes over d cycles: they are a few
+/// times the tolerance, or not much more and shrinking as fast as those over p cycles, instead of standing still.
 int shortest_period(const Strobes& strobes, int p, double tolerance) {
+    constexpr double few = 4.0;
+    constexpr double not_much_more = 1000.0;
+    const auto rate = [&](int period) { return std::log(strobes.contraction(period)) / period; };
     for (int d = 1; d < p; ++d) {
-        if (p % d == 0 && strobes.change(d) <= 4.0 * tolerance) { return d; }
+        if (p % d != 0) { continue; }
+        const double change = strobes.change(d);
+        if (change <= few * tolerance) { return d; }
+        if (change <= not_much_more * tolerance && rate(d) < 0.5 * rate(p) && rate(p) < 0.0) { return d; }
     }
     return p;
 }

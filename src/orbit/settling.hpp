@@ -11,8 +11,8 @@ namespace percuss::orbit {
 
 /// What must fall below the tolerance before a motion counts as settled.
 enum class SettlingRule : std::uint8_t {
-    strobed_change,  ///< the change itself, the rule usual in practice: with a multiplier rho it stops change
-                     ///< rho/(1-rho) short of the orbit, and a slow passage passes for an orbit
+    strobed_change,   ///< the change itself, the rule usual in practice: with a multiplier rho it stops change
+                      ///< rho/(1-rho) short of the orbit, and a slow passage passes for an orbit
     remaining_error,  ///< the change, and the error that remains, change rho/(1-rho) with the contraction rho observed
 };
 
@@ -33,7 +33,9 @@ struct Settling {
     int period = 0;       ///< drive cycles after which it repeats; 0 unless settled
     int cycles = 0;       ///< drive cycles followed
     flow::State state{};  ///< y_n at the end
-    double change = 0.0;  ///< |y_n - y_(n-p)| / (1 + |y_n|), p the period, or one cycle unless settled
+    /// |y_n - y_(n-p)| / (1 + |y_n|). p is the period, or a multiple of it after which the motion repeated first; one
+    /// cycle unless settled.
+    double change = 0.0;
     /// Factor per period by which the changes shrink, from the largest of the last max(8, p) changes and of as many
     /// before them; absent (NaN) when too few cycles were followed. At most 0.9999 in remaining_error: changes that
     /// are down to 1e-4 of the tolerance and no longer shrink count as rounding.
