@@ -42,19 +42,18 @@ void add_simulate_keys(std::vector<SettingInfo>& table) {
                      "length of the series in drive cycles"});
     table.push_back({"simulate.samples", "", "whole number, at least 1", std::to_string(study.samples),
                      "rows of the series per drive cycle"});
-    table.push_back({"simulate.kick", "",
-                     "velocity VALUE at cycle N, or voltage SHARE for N cycles at cycle N (force SHARE ... of a "
-                     "spring-mass system), or none",
-                     "none",
-                     "a disturbance: x' jumps by VALUE (m/s), or the drive is SHARE (50 %) of itself for N cycles; "
-                     "N may be a fraction"});
+    table.push_back(
+        {"simulate.kick", "", "velocity ... | voltage ... | force ... | none", "none",
+         "a disturbance: 'velocity 0.05 m/s at cycle 50': x' jumps by so much; 'voltage 50 % for 2 cycles at "
+         "cycle 50' (spring-mass: force): the drive is that share of itself; cycles may be fractions"});
 }
 
 void add_sweep_keys(std::vector<SettingInfo>& table) {
     const study::SweepStudy study;
-    const std::string frequency = "above 0; omega of a nondimensional problem; spring-mass also in rad/s";
-    table.push_back({"sweep.from", "Hz", frequency, "0.6 linear resonance", "lowest drive frequency"});
-    table.push_back({"sweep.to", "Hz", frequency, "2 linear resonance", "highest drive frequency"});
+    const std::string frequency = "above 0";
+    const std::string kind = ", or omega of a nondimensional problem; spring-mass problems take rad/s as well";
+    table.push_back({"sweep.from", "Hz", frequency, "0.6 linear resonance", "lowest drive frequency" + kind});
+    table.push_back({"sweep.to", "Hz", frequency, "2 linear resonance", "highest drive frequency" + kind});
     table.push_back({"sweep.mode", "", "steps | chirp", "steps",
                      "steps: settle at every frequency, on from the state of the one before; chirp: never settle, the "
                      "frequency moves on with every drive cycle at a constant rate in time"});

@@ -1,14 +1,16 @@
 #include "io/sweep_results.hpp"
 
-#include "io/json_text.hpp"
 #include "model/number_text.hpp"
 
 #include <algorithm>
+
+#include <nlohmann/json.hpp>
 
 namespace percuss::io {
 
 namespace {
 
+using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using design::Quantity;
 using study::Ending;
 using study::SweepDirection;
@@ -187,7 +189,7 @@ std::string settled_sentence(const study::SweepStudy& study) {
 
 std::string sweep_document(const ProblemFile& problem, const study::SweepStudyResult& result) {
     const study::SweepStudy& study = problem.sweep;
-    Json out = beginning(problem, "percuss/sweep/1");
+    Json out = {{"schema", "percuss/sweep/1"}, {"units", units_of(problem)}};
     out["status"] = status_of(result);
     out["reason"] = result.reason;
     out["mode"] = mode_of(problem);
@@ -210,7 +212,7 @@ std::string sweep_document(const ProblemFile& problem, const study::SweepStudyRe
     double periods = 0.0;
     for (const SweepDirection& direction : result.directions) { periods += direction.periods; }
     out["cost"] = {{"seconds", result.seconds}, {"periods", periods}};
-    return printed(out);
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Presentation present_sweep(const ProblemFile& problem, const study::SweepStudyResult& result) {
