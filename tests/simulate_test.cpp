@@ -2,7 +2,7 @@
 
 #include "design/scene.hpp"
 #include "memory_table.hpp"
-#include "orbit/orbit.hpp"
+#include "orbit/polish.hpp"
 #include "program_run.hpp"
 #include "reference_values.hpp"
 #include "shipped_problem.hpp"
@@ -211,6 +211,42 @@ TEST_CASE("kicks are where they were asked for") {
 
     study.kick = drive_kick(0.5, 1.0, 3.5);
     CHECK_THROWS_AS(simulated(at_omega(1.9), study), std::invalid_argument);
+}
+
+TEST_CASE("the motion without the kick goes on from the phase of the kick") {
+    for (const double at : {1.0, 1.25, 1.5, 1.75}) {
+        CAPTURE(at);
+        SimulateStudy study = from_state(upper_branch, 3);
+        study.kick = velocity_kick(0.0, at);
+        const auto result = simulated(at_omega(2.2), study);
+        REQUIRE(result.before);
+        CHECK(result.outcome == KickOutcome::recovered);
+        CHECK(result.before->cycles < 20);  // it stands on the orbit already
+    }
+}
+
+TEST_CASE("a motion of several cycles is the same from each of its strobed states") {
+    const study::StudyProblem problem = at_omega(1.78);
+    const design::Scene scene = design::make_scene(problem.design);
+    const model::Scaled scaled = model::scale(problem.design.actuator);
+    const flow::System system{scene.own.get(), scaled.parameters, nullptr};
+    const flow::State first = test::reference_orbits[5].state;
+    const auto later = orbit::settle(system, first, 1);
+    REQUIRE(later);
+    const study::Motion one = study::identify_motion(system, first, scaled.scales);
+    const study::Motion two = study::identify_motion(system, *later, scaled.scales);
+    REQUIRE(one.period == 3);
+    CHECK(one.polished);
+    CHECK(one.peak_force == doctest::Approx(test::reference_orbits[5].peak_force).epsilon(1e-8));
+    CHECK(orbit::relative_distance(system, one.own_state, two.own_state) > 1e-3);
+    CHECK(study::same_motion(system, one, two));
+    CHECK(study::same_motion(system, two, one));
+    const orbit::Orbit single = orbit::polish_orbit(system, orbit_at_1_9, 1);
+    REQUIRE(single.ok());
+    const study::Motion other = study::identify_motion(system, orbit::state_at_zero(system, single), scaled.scales);
+    REQUIRE(other.settled);
+    CHECK(other.period == 1);
+    CHECK_FALSE(study::same_motion(system, one, other));
 }
 
 TEST_CASE("starts: an orbit at the edge, a given one, rest; no edge without impact") {

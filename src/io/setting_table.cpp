@@ -60,8 +60,8 @@ void add_sweep_keys(std::vector<SettingInfo>& table) {
     table.push_back({"sweep.steps", "", "whole number, at least 1", std::to_string(study.steps),
                      "frequency steps in each direction"});
     table.push_back({"sweep.tolerance", "", "above 1e-12, below 0.01", model::number_text(study.tolerance),
-                     "a motion has settled when its strobed change and the error c rho/(1 - rho) estimated from the "
-                     "change c and its contraction rho are below this, relative to 1 + |state|"});
+                     "a motion has settled when its strobed change and what is left to the orbit (one Newton step; "
+                     "change rho/(1 - rho) for a multiplier rho) are below this, relative to 1 + |state|"});
     table.push_back({"sweep.max_cycles", "", "whole number, at least 1", std::to_string(study.max_cycles),
                      "drive cycles to wait for that at each frequency"});
     table.push_back({"sweep.longest_period", "", "whole number, at least 1, at most 12",

@@ -163,7 +163,8 @@ std::string comparison_sentence(const study::SweepComparison& comparison) {
         text = "The two directions have no settled motion in common to compare";
     } else if (comparison.coincide()) {
         text = "Forward and backward coincide at all " + std::to_string(comparison.compared) +
-               " frequencies compared, to " + model::number_text(comparison.largest, 2) + " relative";
+               " frequencies compared, to " + model::number_text(comparison.largest, 2) +
+               " of the largest amplitude and peak force";
     } else {
         text = "Forward and backward differ at " + std::to_string(comparison.different) + " of " +
                std::to_string(comparison.compared) + " frequencies compared, for omega in";
@@ -172,7 +173,7 @@ std::string comparison_sentence(const study::SweepComparison& comparison) {
         }
     }
     if (comparison.unsettled > 0) {
-        text += "; at " + std::to_string(comparison.unsettled) + " more neither of them settled";
+        text += "; at " + std::to_string(comparison.unsettled) + " more they did not both settle";
     }
     return text + ".";
 }
@@ -180,8 +181,8 @@ std::string comparison_sentence(const study::SweepComparison& comparison) {
 std::string settled_sentence(const study::SweepStudy& study) {
     return "Settled means: the strobed state repeats after at most " + std::to_string(study.longest_period) +
            " drive cycles to " + model::number_text(study.tolerance) +
-           " relative to 1 + |state|, and so does the error that is left, estimated from the rate at which the change "
-           "shrinks; waited for during at most " +
+           " relative to 1 + |state|, it is no further than that from a stable orbit (one Newton step, not taken), and "
+           "this within " +
            std::to_string(study.max_cycles) + " cycles. A sweep sees one motion at a time and misses others.";
 }
 
@@ -199,7 +200,7 @@ std::string sweep_document(const ProblemFile& problem, const study::SweepStudyRe
         out["chirp_cycles"] = study.chirp_cycles;
     } else {
         out["steps"] = study.steps;
-        out["settled"] = {{"rule", "strobed change and estimated remaining error below the tolerance"},
+        out["settled"] = {{"rule", "strobed change and remaining error (one Newton step) below the tolerance, stable"},
                           {"tolerance", study.tolerance},
                           {"max_cycles", study.max_cycles},
                           {"longest_period", study.longest_period}};

@@ -48,12 +48,23 @@ bool other_contacts(const SweepPoint& a, const SweepPoint& b) {
     return a.settled && b.settled && a.contacts * b.period != b.contacts * a.period;
 }
 
-double relative_difference(const SweepPoint& a, const SweepPoint& b) {
-    const double size = std::max(a.amplitude, b.amplitude);
-    const double moved = std::max(std::abs(a.x_max - b.x_max), std::abs(a.x_min - b.x_min));
-    const double force = std::max(a.peak_force, b.peak_force);
-    return std::max(size > 0.0 ? moved / size : 0.0, force > 0.0 ? std::abs(a.peak_force - b.peak_force) / force : 0.0);
-}
+/// The largest amplitude and peak force, against which differences are measured.
+struct Size {
+    double amplitude = 0.0;
+    double force = 0.0;
+
+    void include(std::span<const SweepPoint> points) {
+        for (const SweepPoint& point : points) {
+            amplitude = std::fmax(amplitude, point.amplitude);  // NaN, of a lost motion, does not count
+            force = std::fmax(force, point.peak_force);
+        }
+    }
+    [[nodiscard]] double difference(const SweepPoint& a, const SweepPoint& b) const {
+        const double moved = std::max(std::abs(a.x_max - b.x_max), std::abs(a.x_min - b.x_min));
+        const double harder = std::abs(a.peak_force - b.peak_force);
+        return std::max(amplitude > 0.0 ? moved / amplitude : 0.0, force > 0.0 ? harder / force : 0.0);
+    }
+};
 
 }  // namespace
 
@@ -98,20 +109,23 @@ SweepComparison compare(std::span<const SweepPoint> forward, std::span<const Swe
     comparison.tolerance = std::max(1e-5, 1e3 * settling_tolerance);
     std::map<double, const SweepPoint*> others;
     for (const SweepPoint& point : backward) { others.emplace(point.omega, &point); }
+    Size size;
+    size.include(forward);
+    size.include(backward);
     bool in_range = false;
     for (const SweepPoint& one : forward) {
         const auto found = others.find(one.omega);
         if (found == others.end()) { continue; }
         const SweepPoint& other = *found->second;
-        if (!one.settled && !other.settled) {
+        if (!one.settled || !other.settled) {
             ++comparison.unsettled;
             in_range = false;
             continue;
         }
         ++comparison.compared;
-        const double difference = relative_difference(one, other);
-        const bool same = one.settled && other.settled && one.period == other.period &&
-                          one.contacts == other.contacts && difference <= comparison.tolerance;
+        const double difference = size.difference(one, other);
+        const bool same =
+            one.period == other.period && one.contacts == other.contacts && difference <= comparison.tolerance;
         if (same) {
             comparison.largest = std::max(comparison.largest, difference);
         } else {
