@@ -107,6 +107,13 @@ TEST_CASE("periods: a subharmonic, a spiral that is none, a motion that never re
     CHECK(restless.period == 0);
     CHECK(restless.cycles == 500);
 
+    // On an unstable orbit the strobed state repeats too, for a while.
+    const auto& unstable = test::reference_orbits[2];
+    const auto left = orbit::settle_until_repeating(bench.system.at_omega(unstable.omega), unstable.state, {});
+    REQUIRE(left.settled);
+    CHECK(left.contraction < 1.0);
+    CHECK(orbit::relative_distance(bench.system, left.state, unstable.state) > 1e-2);
+
     // Lightly damped: the motion spirals in and comes near to where it was p cycles ago for various p.
     const Bench soft("soft-impact");
     std::vector<double> omegas;
