@@ -1,62 +1,21 @@
-// Runs the program itself, named by the environment variable PERCUSS_BIN.
-
-#include "scratch_folder.hpp"
+#include "program_run.hpp"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <vector>
-
-#include <sys/wait.h>
 
 namespace {
 
 namespace fs = std::filesystem;
+using percuss::tests::has;
+using percuss::tests::lines;
+using percuss::tests::Outcome;
 using percuss::tests::read_file;
+using percuss::tests::run;
 using percuss::tests::ScratchFolder;
-
-struct Outcome {
-    int exit_code = -1;
-    std::string out;
-    std::string err;
-};
-
-std::string environment(const char* name, const std::string& fallback) {
-    const char* value = std::getenv(name);
-    return value == nullptr ? fallback : value;
-}
-
-std::string quoted(const std::string& word) {
-    std::string text = "'";
-    for (const char c : word) { text += c == '\'' ? "'\\''" : std::string(1, c); }
-    return text + "'";
-}
-
-/// Runs the program inside a folder; `prefix` stands before it in the shell command.
-Outcome run(const ScratchFolder& folder, const std::vector<std::string>& arguments, const std::string& prefix = "") {
-    const ScratchFolder streams;
-    std::string command =
-        "cd " + quoted(folder.path().string()) + " && " + prefix + " " + quoted(environment("PERCUSS_BIN", "percuss"));
-    for (const std::string& argument : arguments) { command += " " + quoted(argument); }
-    command += " >" + quoted((streams.path() / "out").string()) + " 2>" + quoted((streams.path() / "err").string());
-    const int status = std::system(command.c_str());
-    Outcome outcome;
-    outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    outcome.out = read_file(streams.path() / "out");
-    outcome.err = read_file(streams.path() / "err");
-    return outcome;
-}
-
-std::string shipped(const std::string& name) {
-    return (fs::absolute(environment("PERCUSS_SOURCE_DIR", ".")) / "problems" / name).string();
-}
-
-long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using percuss::tests::shipped;
 
 const std::string nondimensional = "[nondimensional]\nlambda_p = 1.1\nmu_ratio = 1\nalpha_A = 3\nalpha_B = 2\n"
                                    "delta_A = 0.3\ndelta_B = 60\nl = 0.8\nk = 2500\ndelta_i = 2\nphi_pp = 0.4\n";
@@ -70,8 +29,10 @@ TEST_CASE("version and help") {
     CHECK(version.out.starts_with("percuss "));
     const Outcome help = run(folder, {"--help"});
     CHECK(help.exit_code == 0);
-    for (const char* word : {"check", "orbit", "evaluate", "optimise", "--time-limit"}) { CHECK(has(help.out, word)); }
-    for (const char* verb : {"check", "orbit", "evaluate", "optimise", "optimize"}) {
+    for (const char* word : {"check", "simulate", "sweep", "orbit", "evaluate", "optimise", "--time-limit"}) {
+        CHECK(has(help.out, word));
+    }
+    for (const char* verb : {"check", "simulate", "sweep", "orbit", "evaluate", "optimise", "optimize"}) {
         const Outcome verb_help = run(folder, {verb, "--help"});
         CHECK(verb_help.exit_code == 0);
         CHECK(has(verb_help.out, "stop.gap"));

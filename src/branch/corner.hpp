@@ -19,7 +19,7 @@ struct Corner {
     Standing before;  ///< entering: the grazing motion in the form without the contact
     Departure onward;
     bool shorter_period = false;  ///< leaving: what remains repeats sooner, it belongs to a branch of shorter period
-    int entering_contact = -1;  ///< in the sequence of `onward`; -1 when a contact has left
+    int entering_contact = -1;    ///< in the sequence of `onward`; -1 when a contact has left
 };
 
 inline constexpr int no_contact = -1;

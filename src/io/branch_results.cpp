@@ -2,16 +2,18 @@
 
 #include "design/scene.hpp"
 #include "io/csv_table.hpp"
-#include "io/json_text.hpp"
 #include "model/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 namespace percuss::io {
 
 namespace {
 
+using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using boundary::Kind;
 using branch::BoundaryPoint;
 using branch::Branch;
@@ -162,7 +164,7 @@ std::string cell(double value) { return std::isnan(value) ? "" : model::exact_te
 }  // namespace
 
 std::string branch_document(const ProblemFile& problem, const study::BranchStudyResult& result) {
-    Json out = beginning(problem, "percuss/branch/1");
+    Json out = {{"schema", "percuss/branch/1"}, {"units", units_of(problem)}};
     out["reason"] = result.reason;
     out["along"] = std::string(model::key_info(result.along).name);
     out["from"] = result.from;
@@ -198,7 +200,7 @@ std::string branch_document(const ProblemFile& problem, const study::BranchStudy
         }
     }
     out["cost"] = {{"seconds", result.seconds}, {"periods", result.periods}, {"orbit_solves", result.solves}};
-    return printed(out);
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Presentation present_branch(const ProblemFile& problem, const study::BranchStudyResult& result) {

@@ -2,13 +2,15 @@
 
 #include "design/scene.hpp"
 #include "io/csv_table.hpp"
-#include "io/json_text.hpp"
 #include "model/number_text.hpp"
+
+#include <nlohmann/json.hpp>
 
 namespace percuss::io {
 
 namespace {
 
+using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using branch::LocusPoint;
 using design::Quantity;
 
@@ -29,7 +31,7 @@ std::string frequency_text(const ProblemFile& problem, const study::LocusStudyRe
 }  // namespace
 
 std::string locus_document(const ProblemFile& problem, const study::LocusStudyResult& result) {
-    Json out = beginning(problem, "percuss/locus/1");
+    Json out = {{"schema", "percuss/locus/1"}, {"units", units_of(problem)}};
     out["reason"] = result.reason;
     out["kind"] = boundary::to_string(result.kind);
     out["along"] = std::string(model::key_info(result.along).name);
@@ -55,7 +57,7 @@ std::string locus_document(const ProblemFile& problem, const study::LocusStudyRe
         out["curves"].push_back({{"curve", c}, {"end", branch::to_string(curve.end)}, {"reason", curve.end_reason}});
     }
     out["cost"] = {{"seconds", result.seconds}, {"periods", result.periods}, {"orbit_solves", result.solves}};
-    return printed(out);
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Presentation present_locus(const ProblemFile& problem, const study::LocusStudyResult& result) {

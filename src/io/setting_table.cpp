@@ -44,27 +44,26 @@ void add_simulate_keys(std::vector<SettingInfo>& table) {
                      "length of the series in drive cycles"});
     table.push_back({"simulate.samples", "", "whole number, at least 1", std::to_string(study.samples),
                      "rows of the series per drive cycle"});
-    table.push_back({"simulate.kick", "",
-                     "velocity VALUE at cycle N, or voltage SHARE for N cycles at cycle N (force SHARE ... of a "
-                     "spring-mass system), or none",
-                     "none",
-                     "a disturbance: x' jumps by VALUE (m/s), or the drive is SHARE (50 %) of itself for N cycles; "
-                     "N may be a fraction"});
+    table.push_back(
+        {"simulate.kick", "", "velocity ... | voltage ... | force ... | none", "none",
+         "a disturbance: 'velocity 0.05 m/s at cycle 50': x' jumps by so much; 'voltage 50 % for 2 cycles at "
+         "cycle 50' (spring-mass: force): the drive is that share of itself; cycles may be fractions"});
 }
 
 void add_sweep_keys(std::vector<SettingInfo>& table) {
     const study::SweepStudy study;
-    const std::string frequency = "above 0; omega of a nondimensional problem; spring-mass also in rad/s";
-    table.push_back({"sweep.from", "Hz", frequency, "0.6 linear resonance", "lowest drive frequency"});
-    table.push_back({"sweep.to", "Hz", frequency, "2 linear resonance", "highest drive frequency"});
+    const std::string frequency = "above 0";
+    const std::string kind = ", or omega of a nondimensional problem; spring-mass problems take rad/s as well";
+    table.push_back({"sweep.from", "Hz", frequency, "0.6 linear resonance", "lowest drive frequency" + kind});
+    table.push_back({"sweep.to", "Hz", frequency, "2 linear resonance", "highest drive frequency" + kind});
     table.push_back({"sweep.mode", "", "steps | chirp", "steps",
                      "steps: settle at every frequency, on from the state of the one before; chirp: never settle, the "
                      "frequency moves on with every drive cycle at a constant rate in time"});
     table.push_back({"sweep.steps", "", "whole number, at least 1", std::to_string(study.steps),
                      "frequency steps in each direction"});
     table.push_back({"sweep.tolerance", "", "above 1e-12, below 0.01", model::number_text(study.tolerance),
-                     "a motion has settled when its strobed change and the error c rho/(1 - rho) estimated from the "
-                     "change c and its contraction rho are below this, relative to 1 + |state|"});
+                     "a motion has settled when its strobed change and what is left to the orbit (one Newton step; "
+                     "change rho/(1 - rho) for a multiplier rho) are below this, relative to 1 + |state|"});
     table.push_back({"sweep.max_cycles", "", "whole number, at least 1", std::to_string(study.max_cycles),
                      "drive cycles to wait for that at each frequency"});
     table.push_back({"sweep.longest_period", "", "whole number, at least 1, at most 12",

@@ -1,15 +1,17 @@
 #include "io/simulate_results.hpp"
 
-#include "io/json_text.hpp"
 #include "io/problem_sections.hpp"
 #include "model/number_text.hpp"
 
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 namespace percuss::io {
 
 namespace {
 
+using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using design::Quantity;
 using study::Ending;
 using study::Kick;
@@ -144,7 +146,7 @@ Block series_block(const ProblemFile& problem, const study::SimulateStudyResult&
 
 std::string simulate_document(const ProblemFile& problem, const study::SimulateStudyResult& result) {
     const design::OperatingPoint& point = result.operating_point;
-    Json out = beginning(problem, "percuss/simulate/1");
+    Json out = {{"schema", "percuss/simulate/1"}, {"units", units_of(problem)}};
     out["status"] = status_of(result.ending);
     out["reason"] = result.reason;
     out["operating_point"] = {{"drive_frequency", point.drive_frequency},
@@ -164,7 +166,7 @@ std::string simulate_document(const ProblemFile& problem, const study::SimulateS
     out["after"] = motion_of(result.after);
     out["outcome"] = study::to_string(result.outcome);
     out["cost"] = {{"seconds", result.seconds}, {"periods", result.periods}};
-    return printed(out);
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Presentation present_simulation(const ProblemFile& problem, const study::SimulateStudyResult& result) {

@@ -1,14 +1,16 @@
 #include "io/sweep_results.hpp"
 
-#include "io/json_text.hpp"
 #include "model/number_text.hpp"
 
 #include <algorithm>
+
+#include <nlohmann/json.hpp>
 
 namespace percuss::io {
 
 namespace {
 
+using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using design::Quantity;
 using study::Ending;
 using study::SweepDirection;
@@ -146,7 +148,7 @@ Block directions_block(const ProblemFile& problem, const study::SweepStudyResult
                              [](const SweepPoint& a, const SweepPoint& b) { return a.peak_force < b.peak_force; });
         const auto settled = std::count_if(direction.points.begin(), direction.points.end(),
                                            [](const SweepPoint& point) { return point.settled; });
-        const bool any = largest != direction.points.end();
+        const bool any = largest != direction.points.end() && largest->peak_force > 0.0;
         block.rows.push_back({std::string(direction_of(direction)), std::to_string(direction.points.size()),
                               is_chirp(problem) ? "-" : std::to_string(settled),
                               any ? text_of(problem, Quantity::peak_force, largest->peak_force) : "-",
@@ -161,7 +163,8 @@ std::string comparison_sentence(const study::SweepComparison& comparison) {
         text = "The two directions have no settled motion in common to compare";
     } else if (comparison.coincide()) {
         text = "Forward and backward coincide at all " + std::to_string(comparison.compared) +
-               " frequencies compared, to " + model::number_text(comparison.largest, 2) + " relative";
+               " frequencies compared, to " + model::number_text(comparison.largest, 2) +
+               " of the largest amplitude and peak force";
     } else {
         text = "Forward and backward differ at " + std::to_string(comparison.different) + " of " +
                std::to_string(comparison.compared) + " frequencies compared, for omega in";
@@ -170,7 +173,7 @@ std::string comparison_sentence(const study::SweepComparison& comparison) {
         }
     }
     if (comparison.unsettled > 0) {
-        text += "; at " + std::to_string(comparison.unsettled) + " more neither of them settled";
+        text += "; at " + std::to_string(comparison.unsettled) + " more they did not both settle";
     }
     return text + ".";
 }
@@ -178,8 +181,8 @@ std::string comparison_sentence(const study::SweepComparison& comparison) {
 std::string settled_sentence(const study::SweepStudy& study) {
     return "Settled means: the strobed state repeats after at most " + std::to_string(study.longest_period) +
            " drive cycles to " + model::number_text(study.tolerance) +
-           " relative to 1 + |state|, and so does the error that is left, estimated from the rate at which the change "
-           "shrinks; waited for during at most " +
+           " relative to 1 + |state|, it is no further than that from a stable orbit (one Newton step, not taken), and "
+           "this within " +
            std::to_string(study.max_cycles) + " cycles. A sweep sees one motion at a time and misses others.";
 }
 
@@ -187,7 +190,7 @@ std::string settled_sentence(const study::SweepStudy& study) {
 
 std::string sweep_document(const ProblemFile& problem, const study::SweepStudyResult& result) {
     const study::SweepStudy& study = problem.sweep;
-    Json out = beginning(problem, "percuss/sweep/1");
+    Json out = {{"schema", "percuss/sweep/1"}, {"units", units_of(problem)}};
     out["status"] = status_of(result);
     out["reason"] = result.reason;
     out["mode"] = mode_of(problem);
@@ -197,7 +200,7 @@ std::string sweep_document(const ProblemFile& problem, const study::SweepStudyRe
         out["chirp_cycles"] = study.chirp_cycles;
     } else {
         out["steps"] = study.steps;
-        out["settled"] = {{"rule", "strobed change and estimated remaining error below the tolerance"},
+        out["settled"] = {{"rule", "strobed change and remaining error (one Newton step) below the tolerance, stable"},
                           {"tolerance", study.tolerance},
                           {"max_cycles", study.max_cycles},
                           {"longest_period", study.longest_period}};
@@ -210,7 +213,7 @@ std::string sweep_document(const ProblemFile& problem, const study::SweepStudyRe
     double periods = 0.0;
     for (const SweepDirection& direction : result.directions) { periods += direction.periods; }
     out["cost"] = {{"seconds", result.seconds}, {"periods", periods}};
-    return printed(out);
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Presentation present_sweep(const ProblemFile& problem, const study::SweepStudyResult& result) {

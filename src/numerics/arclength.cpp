@@ -98,6 +98,7 @@ ArclengthWalker::Correction ArclengthWalker::correct() {
         const double scale = 1.0 + candidate_.norm();
         if ((candidate_ - predicted_).norm() > options_.largest_correction * step_) { return Correction::rejected; }
         if (f_.norm() <= options_.tolerance * scale && du.norm() <= options_.step_tolerance * scale) {
+            candidate_ += du;  // too small to be worth looking at again
             return Correction::converged;
         }
         candidate_ += du;

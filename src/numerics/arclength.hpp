@@ -21,7 +21,8 @@ struct ArclengthOptions {
     double largest_angle = 0.35;            ///< beyond this the step is repeated with half the length
     double largest_correction = 0.3;  ///< the corrector may move this share of the step: more means another branch
     double tolerance = 1e-10;         ///< on |F|, relative to 1 + |u|
-    double step_tolerance = 1e-6;     ///< on the corrector's next step, which is not taken, relative likewise
+    double step_tolerance =
+        1e-6;  ///< on the corrector's last step, after which F is not evaluated again, relative likewise
     int newton_iterations = 8;
 };
 

@@ -1,5 +1,7 @@
 #include "orbit/settling.hpp"
 
+#include "orbit/return_map.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,8 +16,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr int longest_recognised = 12;
-constexpr int shortest_window = 8;
-constexpr double slowest_contraction = 0.9999;
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 
 /// The last strobed states, and what their changes tell.
@@ -32,62 +32,91 @@ public:
         return relative_distance(system_, back(ago + p), back(ago));
     }
 
-    /// Contraction per p cycles; absent while there is too little to tell it from.
-    [[nodiscard]] double contraction(int p) const {
-        const int window = std::max(shortest_window, p);
-        if (!reaches_back(static_cast<std::size_t>(2 * window + p - 1))) { return absent; }
-        const double now = largest_change(p, 0, window);
-        const double before = largest_change(p, window, window);
-        return now == 0.0 ? 0.0 : std::pow(now / before, static_cast<double>(p) / window);
-    }
-
 private:
     [[nodiscard]] const flow::State& back(int ago) const {
         return ring_[(count_ - 1 - static_cast<std::size_t>(ago)) % ring_.size()];
     }
-    [[nodiscard]] double largest_change(int p, int ago, int window) const {
-        double largest = 0.0;
-        for (int k = 0; k < window; ++k) { largest = std::max(largest, change(p, ago + k)); }
-        return largest;
-    }
 
     const flow::System& system_;
-    std::array<flow::State, 64> ring_{};
+    std::array<flow::State, longest_recognised + 1> ring_{};
     std::size_t count_ = 0;
 };
 
-void judge(const Strobes& strobes, int p, Settling& settling) {
-    settling.change = strobes.change(p);
-    settling.contraction = strobes.contraction(p);
-    const double rho = std::min(settling.contraction, slowest_contraction);
-    settling.remaining_error = std::isnan(settling.contraction) ? absent : settling.change * rho / (1.0 - rho);
+/// How far a state is from the orbit of p cycles next to it, by one Newton step, and the largest multiplier there.
+struct Distance {
+    double error = absent;
+    double contraction = absent;
+};
+
+Distance distance_from_orbit(const flow::System& system, const flow::State& state, int p) {
+    ReturnMap map;
+    map.period = p;
+    const Image image = apply(system, map, state, Differentiate::state);
+    if (!image.ok()) { return {}; }
+    const int n = system.states();
+    const numerics::SmallMatrix monodromy = image.derivative.leftCols(n);
+    const numerics::SmallVector y = to_vector(system, state);
+    const numerics::SmallMatrix jacobian = numerics::SmallMatrix::Identity(n, n) - monodromy;
+    const numerics::SmallVector step = jacobian.partialPivLu().solve(to_vector(system, image.state) - y);
+    return {step.norm() / (1.0 + y.norm()), monodromy.eigenvalues().cwiseAbs().maxCoeff()};
 }
 
-bool is_settled(const Settling& settling, const SettlingOptions& options) {
-    if (!(settling.change <= options.tolerance)) { return false; }
-    return options.rule == SettlingRule::strobed_change || settling.remaining_error <= options.tolerance;
-}
-
-/// A motion of period d close to a multiplier -1 settles as one of period 2 d first. Both states are within the
-/// tolerance of the orbit then, so that a change of a few times the tolerance over d cycles means period d.
+/// A motion of period d that rotates about its orbit (multipliers near a root of unity) comes back after some p > d
+/// cycles sooner than after d. It is as near to the orbit after each of its cycles, so that its changes over d cycles
+/// are a few times the tolerance.
 int shortest_period(const Strobes& strobes, int p, double tolerance) {
+    constexpr double few = 10.0;
     for (int d = 1; d < p; ++d) {
-        if (p % d == 0 && strobes.change(d) <= 4.0 * tolerance) { return d; }
+        if (p % d == 0 && strobes.change(d) <= few * tolerance) { return d; }
     }
     return p;
 }
 
-bool has_settled(const Strobes& strobes, const SettlingOptions& options, Settling& settling) {
-    for (int p = 1; p <= options.longest_period && strobes.reaches_back(static_cast<std::size_t>(p)); ++p) {
-        if (strobes.change(p) > options.tolerance) { continue; }
-        judge(strobes, p, settling);
-        if (is_settled(settling, options)) {
-            settling.period = shortest_period(strobes, p, options.tolerance);
-            return true;
+/// Judges a motion after every cycle.
+class Judge {
+public:
+    Judge(const flow::System& system, const SettlingOptions& options) : system_(system), options_(options) {}
+
+    /// Whether the motion has settled, which fills in what is known of it.
+    bool has_settled(const Strobes& strobes, Settling& settling) {
+        for (int p = 1; p <= options_.longest_period && strobes.reaches_back(static_cast<std::size_t>(p)); ++p) {
+            settling.change = strobes.change(p);
+            if (settling.change <= options_.tolerance && is_near(strobes, p, settling)) {
+                settling.period = shortest_period(strobes, p, options_.tolerance);
+                if (settling.period < p && options_.rule == SettlingRule::remaining_error) {
+                    const Distance distance = distance_from_orbit(system_, strobes.last(), settling.period);
+                    settling.contraction = distance.contraction;
+                }
+                return true;
+            }
         }
+        return false;
     }
-    return false;
-}
+
+private:
+    bool is_near(const Strobes& strobes, int p, Settling& settling) {
+        if (options_.rule == SettlingRule::strobed_change) { return true; }
+        int& next = next_look_[static_cast<std::size_t>(p)];
+        if (settling.cycles < next) { return false; }
+        const Distance distance = distance_from_orbit(system_, strobes.last(), p);
+        settling.contraction = distance.contraction;
+        settling.remaining_error = distance.error;
+        const bool stable = distance.contraction < 1.0;
+        if (stable && distance.error <= options_.tolerance) { return true; }
+        next = settling.cycles + p * (stable ? periods_to_go(distance) : 1);
+        return false;
+    }
+
+    /// Looking costs several cycles; it is worth while again when the error may have shrunk enough.
+    [[nodiscard]] int periods_to_go(const Distance& distance) const {
+        const double periods = std::log(options_.tolerance / distance.error) / std::log(distance.contraction);
+        return static_cast<int>(std::clamp(std::ceil(0.9 * periods), 1.0, 50.0));
+    }
+
+    const flow::System& system_;
+    const SettlingOptions& options_;
+    std::array<int, longest_recognised + 1> next_look_{};
+};
 
 void check(const SettlingOptions& options) {
     if (!(options.tolerance > 1e-12)) { throw std::invalid_argument("settling tolerance: allowed is above 1e-12"); }
@@ -123,7 +152,9 @@ Settling settle_until_repeating(const flow::System& system, const flow::State& s
     check(options);
     Settling settling;
     settling.status = flow::Status::ok;
+    settling.contraction = settling.remaining_error = absent;
     Strobes strobes(system, start);
+    Judge judge(system, options);
     flow::Request request = cycles_from(start, 1, options);
     flow::Result result;
     while (!settling.settled && settling.cycles < options.max_cycles) {
@@ -135,12 +166,12 @@ Settling settle_until_repeating(const flow::System& system, const flow::State& s
         }
         strobes.push(result.state);
         ++settling.cycles;
-        settling.settled = has_settled(strobes, options, settling);
+        settling.settled = judge.has_settled(strobes, settling);
     }
     settling.state = strobes.last();
     if (!settling.settled) {
-        settling.change = settling.contraction = settling.remaining_error = absent;
-        if (settling.cycles > 0) { judge(strobes, 1, settling); }
+        settling.contraction = settling.remaining_error = absent;
+        settling.change = settling.cycles > 0 ? strobes.change(1) : absent;
     }
     return settling;
 }

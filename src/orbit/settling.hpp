@@ -11,9 +11,12 @@ namespace percuss::orbit {
 
 /// What must fall below the tolerance before a motion counts as settled.
 enum class SettlingRule : std::uint8_t {
-    strobed_change,   ///< the change itself, the rule usual in practice: with a multiplier rho it stops change
-                      ///< rho/(1-rho) short of the orbit, and a slow passage passes for an orbit
-    remaining_error,  ///< the change, and the error that remains, change rho/(1-rho) with the contraction rho observed
+    /// The change itself, the rule usual in practice. With a multiplier rho it stops change rho/(1 - rho) short of the
+    /// orbit, a slow passage passes for an orbit, and a slow spiral may pass for a subharmonic.
+    strobed_change,
+    /// The change, and the error that remains: the Newton step from the strobed state to the orbit, with the exact
+    /// monodromy matrix M. With one multiplier rho it is change rho/(1 - rho). The orbit must be stable.
+    remaining_error,
 };
 
 struct SettlingOptions {
@@ -33,12 +36,11 @@ struct Settling {
     int period = 0;       ///< drive cycles after which it repeats; 0 unless settled
     int cycles = 0;       ///< drive cycles followed
     flow::State state{};  ///< y_n at the end
-    double change = 0.0;  ///< |y_n - y_(n-p)| / (1 + |y_n|), p the period, or one cycle unless settled
-    /// Factor per period by which the changes shrink, from the largest of the last max(8, p) changes and of as many
-    /// before them; absent (NaN) when too few cycles were followed. At most 0.9999 in remaining_error: changes that
-    /// are down to 1e-4 of the tolerance and no longer shrink count as rounding.
-    double contraction = 0.0;
-    double remaining_error = 0.0;  ///< change rho/(1-rho), relative as `change`; absent likewise
+    /// |y_n - y_(n-p)| / (1 + |y_n|). p is the period, or for a motion that spirals in perhaps a multiple of it; one
+    /// cycle unless settled.
+    double change = 0.0;
+    double contraction = 0.0;      ///< largest multiplier of the period; absent (NaN) unless settled by remaining_error
+    double remaining_error = 0.0;  ///< |(I - M)^-1 (P(y_n) - y_n)| / (1 + |y_n|); absent likewise
 };
 
 /// Follows the motion from `start` at phase 0. Throws std::invalid_argument for options out of range.

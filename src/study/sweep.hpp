@@ -65,10 +65,10 @@ struct SweepDirection {
 /// The settled motions of both directions at the same frequencies.
 struct SweepComparison {
     int compared = 0;
-    int unsettled = 0;       ///< frequencies where neither direction settled
-    int different = 0;       ///< other period, contacts, extremes or peak force; or one of them did not settle
-    double largest = 0.0;    ///< largest relative difference where they agree
-    double tolerance = 0.0;  ///< relative, of extremes (to the amplitude) and peak force
+    int unsettled = 0;       ///< frequencies where a direction did not settle, so that they cannot be compared
+    int different = 0;       ///< other period, contacts, extremes or peak force
+    double largest = 0.0;    ///< largest difference where they agree
+    double tolerance = 0.0;  ///< of extremes and peak force, relative to the largest amplitude and peak force met
     std::vector<std::pair<double, double>> ranges;  ///< omega of the first and last point of each differing stretch
     [[nodiscard]] bool coincide() const { return compared > 0 && different == 0; }
 };

@@ -9,24 +9,18 @@ namespace {
 
 constexpr double out_of_line = 4.0;
 constexpr double noticeable = 1e-2;
-constexpr std::size_t steady_cycles = 12;
+constexpr std::size_t quiet_cycles = 12;
 
 using Value = double SweepPoint::*;
 
-/// A property along the settled points of a sweep.
+/// A property along the points of a sweep.
 class Profile {
 public:
     Profile(std::span<const SweepPoint> points, Value value) : points_(points), value_(value) {
-        double lowest = 0.0;
-        double highest = 0.0;
-        bool first = true;
-        for (const SweepPoint& point : points) {
-            if (!point.settled) { continue; }
-            lowest = first ? point.*value : std::min(lowest, point.*value);
-            highest = first ? point.*value : std::max(highest, point.*value);
-            first = false;
-        }
-        range_ = highest - lowest;
+        const auto [lowest, highest] =
+            std::minmax_element(points.begin(), points.end(),
+                                [&](const SweepPoint& a, const SweepPoint& b) { return a.*value < b.*value; });
+        range_ = points.empty() ? 0.0 : *highest.*value - *lowest.*value;
     }
 
     /// Whether the step from point i to the next is a discontinuity as far as can be seen.
@@ -40,10 +34,9 @@ public:
     }
 
 private:
-    /// Absent unless both points are there and settled.
+    /// Absent at the end.
     [[nodiscard]] double step_after(std::size_t i) const {
-        if (i + 1 >= points_.size() || !points_[i].settled || !points_[i + 1].settled) { return design::absent; }
-        return std::abs(points_[i + 1].*value_ - points_[i].*value_);
+        return i + 1 < points_.size() ? std::abs(points_[i + 1].*value_ - points_[i].*value_) : design::absent;
     }
 
     std::span<const SweepPoint> points_;
@@ -55,17 +48,23 @@ bool other_contacts(const SweepPoint& a, const SweepPoint& b) {
     return a.settled && b.settled && a.contacts * b.period != b.contacts * a.period;
 }
 
-bool steady(std::span<const SweepPoint> cycles, bool striking) {
-    return std::all_of(cycles.begin(), cycles.end(),
-                       [&](const SweepPoint& cycle) { return (cycle.contacts > 0) == striking; });
-}
+/// The largest amplitude and peak force, against which differences are measured.
+struct Size {
+    double amplitude = 0.0;
+    double force = 0.0;
 
-double relative_difference(const SweepPoint& a, const SweepPoint& b) {
-    const double size = std::max(a.amplitude, b.amplitude);
-    const double moved = std::max(std::abs(a.x_max - b.x_max), std::abs(a.x_min - b.x_min));
-    const double force = std::max(a.peak_force, b.peak_force);
-    return std::max(size > 0.0 ? moved / size : 0.0, force > 0.0 ? std::abs(a.peak_force - b.peak_force) / force : 0.0);
-}
+    void include(std::span<const SweepPoint> points) {
+        for (const SweepPoint& point : points) {
+            amplitude = std::fmax(amplitude, point.amplitude);  // NaN, of a lost motion, does not count
+            force = std::fmax(force, point.peak_force);
+        }
+    }
+    [[nodiscard]] double difference(const SweepPoint& a, const SweepPoint& b) const {
+        const double moved = std::max(std::abs(a.x_max - b.x_max), std::abs(a.x_min - b.x_min));
+        const double harder = std::abs(a.peak_force - b.peak_force);
+        return std::max(amplitude > 0.0 ? moved / amplitude : 0.0, force > 0.0 ? harder / force : 0.0);
+    }
+};
 
 }  // namespace
 
@@ -74,6 +73,7 @@ std::vector<SweepJump> find_jumps(std::span<const SweepPoint> points) {
     const Profile amplitude(points, &SweepPoint::amplitude);
     const Profile peak_force(points, &SweepPoint::peak_force);
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        if (!points[i].settled && !points[i + 1].settled) { continue; }
         SweepJump jump{i, i + 1};
         jump.period = points[i].period != points[i + 1].period;
         jump.contacts = other_contacts(points[i], points[i + 1]);
@@ -86,15 +86,19 @@ std::vector<SweepJump> find_jumps(std::span<const SweepPoint> points) {
 
 std::vector<SweepJump> find_chirp_jumps(std::span<const SweepPoint> cycles) {
     std::vector<SweepJump> jumps;
-    for (std::size_t i = steady_cycles; i + steady_cycles <= cycles.size(); ++i) {
-        const bool striking = cycles[i].contacts > 0;
-        if ((cycles[i - 1].contacts > 0) == striking) { continue; }
-        if (steady(cycles.subspan(i, steady_cycles), striking) &&
-            steady(cycles.subspan(i - steady_cycles, steady_cycles), !striking)) {
-            SweepJump jump{i - 1, i};
-            jump.contacts = true;
-            jumps.push_back(jump);
+    const auto add = [&](std::size_t after) {
+        SweepJump jump{after - 1, after};
+        jump.contacts = true;
+        jumps.push_back(jump);
+    };
+    std::size_t quiet_since = 0;
+    for (std::size_t i = 0; i <= cycles.size(); ++i) {
+        if (i < cycles.size() && !(cycles[i].peak_force > 0.0)) { continue; }
+        if (i - quiet_since >= quiet_cycles) {  // [quiet_since, i) is a quiet stretch
+            if (quiet_since > 0) { add(quiet_since); }
+            if (i < cycles.size()) { add(i); }
         }
+        quiet_since = i + 1;
     }
     return jumps;
 }
@@ -105,20 +109,23 @@ SweepComparison compare(std::span<const SweepPoint> forward, std::span<const Swe
     comparison.tolerance = std::max(1e-5, 1e3 * settling_tolerance);
     std::map<double, const SweepPoint*> others;
     for (const SweepPoint& point : backward) { others.emplace(point.omega, &point); }
+    Size size;
+    size.include(forward);
+    size.include(backward);
     bool in_range = false;
     for (const SweepPoint& one : forward) {
         const auto found = others.find(one.omega);
         if (found == others.end()) { continue; }
         const SweepPoint& other = *found->second;
-        if (!one.settled && !other.settled) {
+        if (!one.settled || !other.settled) {
             ++comparison.unsettled;
             in_range = false;
             continue;
         }
         ++comparison.compared;
-        const double difference = relative_difference(one, other);
-        const bool same = one.settled && other.settled && one.period == other.period &&
-                          one.contacts == other.contacts && difference <= comparison.tolerance;
+        const double difference = size.difference(one, other);
+        const bool same =
+            one.period == other.period && one.contacts == other.contacts && difference <= comparison.tolerance;
         if (same) {
             comparison.largest = std::max(comparison.largest, difference);
         } else {
