@@ -167,7 +167,7 @@ int run_once(double tolerance, double coarseness) {
 
 /// The quickest of AUTO's settings by a few more runs of those that seemed quickest; null when none reaches the limit.
 const TheirEntry* choose(const AutoProgram& program, std::vector<TheirEntry>& theirs, const Limit& limit) {
-    const auto candidates = quickest(theirs, limit, 6);
+    const auto candidates = quickest(theirs, limit, 12);
     for (int round = 0; round < 8; ++round) {
         for (const std::size_t i : candidates) { theirs[i].take(program.run(theirs[i].setting.text())); }
     }
@@ -193,7 +193,7 @@ bool compare(const AutoProgram& program, const Limit& target, std::vector<TheirE
     TheirEntry rival = *chosen;
     double own_process = never;
     double by_default = never;
-    for (int round = 0; round < 25; ++round) {
+    for (int round = 0; round < 50; ++round) {
         rival.take(program.run(rival.setting.text()));
         own_process = std::min(own_process, seconds_once(program, *mine->ours));
         by_default = std::min(by_default, seconds_once(program, *defaults(ours).ours));
