@@ -87,7 +87,8 @@ private:
                 if (!departure) { continue; }
                 report(-1.0, "branch of period " + std::to_string(period));
                 Branch next = branch::trace(setup_.family, *departure, options_);
-                if (next.points.empty() || known(next.points.front())) { continue; }
+                // Beside its flip it is hard to tell from the branch it leaves: so not by its first point.
+                if (next.points.size() < 2 || known(next.points[next.points.size() / 2])) { continue; }
                 next.from_branch = static_cast<int>(i);
                 result_.branches.push_back(std::move(next));
             }
