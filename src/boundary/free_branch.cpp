@@ -8,8 +8,9 @@
 
 namespace percuss::boundary {
 
+using numerics::Matrix;
 using numerics::SmallMatrix;
-using numerics::SmallVector;
+using numerics::Vector;
 
 orbit::ReturnMap FreeBranch::half_cycle() {
     orbit::ReturnMap map;
@@ -29,7 +30,7 @@ FreeBranch::FreeBranch(const flow::System& system)
     : system_(system),
       scale_(system.integrator->linear_resonance(system.parameters)),
       origin_(system.integrator->rest_state(system.parameters)),
-      walker_([this](const SmallVector& u, SmallVector& f, SmallMatrix& j) { return evaluate(u, f, j); },
+      walker_([this](const Vector& u, Vector& f, Matrix& j) { return evaluate(u, f, j); },
               {.first_step = 0.2,
                .largest_step = 20.0,
                .largest_parameter_step = 0.5,
@@ -40,9 +41,9 @@ FreeBranch::FreeBranch(const flow::System& system)
     set_measure(1.0);
 }
 
-SmallVector FreeBranch::to_scaled(const flow::State& y, double omega) const {
+Vector FreeBranch::to_scaled(const flow::State& y, double omega) const {
     const int n = system_.states();
-    SmallVector u(n + 1);
+    Vector u(n + 1);
     for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
         u[static_cast<int>(k)] = (y[k] - origin_[k]) / measure_[k];
     }
@@ -50,7 +51,7 @@ SmallVector FreeBranch::to_scaled(const flow::State& y, double omega) const {
     return u;
 }
 
-flow::State FreeBranch::to_state(const SmallVector& u) const {
+flow::State FreeBranch::to_state(const Vector& u) const {
     flow::State y{};
     for (std::size_t k = 0; k < static_cast<std::size_t>(system_.states()); ++k) {
         y[k] = origin_[k] + u[static_cast<int>(k)] * measure_[k];
@@ -58,7 +59,7 @@ flow::State FreeBranch::to_state(const SmallVector& u) const {
     return y;
 }
 
-bool FreeBranch::evaluate(const SmallVector& u, SmallVector& f, SmallMatrix& jacobian) {
+bool FreeBranch::evaluate(const Vector& u, Vector& f, Matrix& jacobian) {
     const int n = system_.states();
     image_omega_ = u[n] * scale_;
     if (!(image_omega_ > 0.0)) { return false; }
@@ -72,7 +73,7 @@ bool FreeBranch::evaluate(const SmallVector& u, SmallVector& f, SmallMatrix& jac
         jacobian.row(k) /= measure_[static_cast<std::size_t>(k)];
         jacobian.col(k) *= measure_[static_cast<std::size_t>(k)];
     }
-    jacobian.leftCols(n) -= SmallMatrix::Identity(n, n);
+    jacobian.leftCols(n) -= Matrix::Identity(n, n);
     jacobian.col(n) *= scale_;
     return f.allFinite() && jacobian.allFinite();
 }
@@ -80,8 +81,8 @@ bool FreeBranch::evaluate(const SmallVector& u, SmallVector& f, SmallMatrix& jac
 FreePoint FreeBranch::describe() const {
     const int n = system_.states();
     FreePoint point;
-    const SmallVector& u = walker_.point();
-    const SmallVector& t = walker_.tangent();
+    const Vector& u = walker_.point();
+    const Vector& t = walker_.tangent();
     point.state = to_state(u);
     point.omega = u[n] * scale_;
     point.omega_slope = t[n];
@@ -131,7 +132,7 @@ bool FreeBranch::advance() {
     // resonance meet at small losses, and go on on the wrong one.
     walker_.limit_step(std::max(0.5 * walker_.point().head(system_.states()).norm(), 0.2));
     if (!walker_.advance()) { return false; }
-    const SmallVector from = to_scaled(current_.state, current_.omega);
+    const Vector from = to_scaled(current_.state, current_.omega);
     previous_ = current_;
     current_ = describe();
     current_.arclength = previous_.arclength + (walker_.point() - from).norm();

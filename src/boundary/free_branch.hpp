@@ -44,13 +44,13 @@ public:
     void limit_step(double largest) { walker_.limit_step(largest); }
 
 private:
-    bool evaluate(const numerics::SmallVector& u, numerics::SmallVector& f, numerics::SmallMatrix& jacobian);
+    bool evaluate(const numerics::Vector& u, numerics::Vector& f, numerics::Matrix& jacobian);
     [[nodiscard]] FreePoint describe() const;
     void set_measure(double size);
 
     flow::System system_;
-    [[nodiscard]] numerics::SmallVector to_scaled(const flow::State& y, double omega) const;
-    [[nodiscard]] flow::State to_state(const numerics::SmallVector& u) const;
+    [[nodiscard]] numerics::Vector to_scaled(const flow::State& y, double omega) const;
+    [[nodiscard]] flow::State to_state(const numerics::Vector& u) const;
 
     double scale_;         ///< frequencies are divided by this
     flow::State origin_;   ///< rest: states are counted from here

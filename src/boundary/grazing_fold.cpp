@@ -40,7 +40,7 @@ void follow_by_arclength(const flow::System& system, const Boundary& grazing, co
     const int n = system.states() + 1;
     const double unit = grazing.omega;
     const flow::ParameterVector by_omega = orbit::unit_direction(system.integrator->info().omega);
-    const auto equations = [&](const numerics::SmallVector& u, numerics::SmallVector& f, numerics::SmallMatrix& j) {
+    const auto equations = [&](const numerics::Vector& u, numerics::Vector& f, numerics::Matrix& j) {
         if (!(u[n] > 0.0)) { return false; }
         const auto sequence = orbit::unpack(system, u.head(n), 1);
         const auto r = orbit::evaluate(system.at_omega(u[n] * unit), sequence, {&by_omega, 1});
@@ -52,12 +52,12 @@ void follow_by_arclength(const flow::System& system, const Boundary& grazing, co
         return true;
     };
     numerics::ArclengthWalker walker(equations, {.first_step = 0.01, .largest_step = 0.2, .target_angle = 0.2});
-    numerics::SmallVector u(n + 1);
+    numerics::Vector u(n + 1);
     u.head(n) = orbit::pack(system, from.solution.sequence);
     u[n] = from.solution.omega / unit;
     if (!walker.start(u, -1.0)) { return; }
     for (int step = 0; step < 200; ++step) {
-        const numerics::SmallVector before = walker.point();
+        const numerics::Vector before = walker.point();
         const double slope_before = walker.tangent()[n];
         if (!walker.advance()) { return; }
         const double slope = walker.tangent()[n];

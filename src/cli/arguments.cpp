@@ -18,9 +18,9 @@ using io::Setting;
 
 constexpr std::array verb_table = {
     VerbInfo{"check", "print every value of a problem with units, say what is missing or out of range", true},
-    VerbInfo{"simulate", "time series from a start state", false},
+    VerbInfo{"simulate", "time series from a start state, with or without a kick", true},
     VerbInfo{"force-displacement", "quasi-static curve of one membrane", false},
-    VerbInfo{"sweep", "forward and backward frequency sweeps in the time domain", false},
+    VerbInfo{"sweep", "forward and backward frequency sweeps in the time domain", true},
     VerbInfo{"orbit", "the periodic orbit at one frequency: state, multipliers, quantities", true},
     VerbInfo{"branch", "continuation in the drive frequency or a design variable", false},
     VerbInfo{"locus", "follow a boundary in two parameters", false},
@@ -43,7 +43,14 @@ constexpr std::array option_table = {
     OptionInfo{"force", "", "replace the results of an unfinished run", ""},
     OptionInfo{"help", "", "describe the options and keys", ""},
     OptionInfo{"gradients", "", "also the derivatives of all quantities", "evaluate orbit"},
-    OptionInfo{"period", "N", "short for --orbit.period", "orbit"},
+    OptionInfo{"period", "N", "short for --orbit.period", "orbit simulate"},
+    OptionInfo{"start", "STATE", "short for --simulate.start", "simulate"},
+    OptionInfo{"cycles", "N", "short for --simulate.cycles", "simulate"},
+    OptionInfo{"kick", "TEXT", "short for --simulate.kick", "simulate"},
+    OptionInfo{"from", "F", "short for --sweep.from", "sweep"},
+    OptionInfo{"to", "F", "short for --sweep.to", "sweep"},
+    OptionInfo{"steps", "N", "short for --sweep.steps", "sweep"},
+    OptionInfo{"chirp", "", "short for --sweep.mode chirp", "sweep"},
 };
 
 bool applies(const OptionInfo& option, std::string_view verb) {
@@ -113,6 +120,12 @@ void apply(const Setting& option, Arguments& arguments) {
         arguments.gradients = true;
     } else if (option.key == "period") {
         arguments.keys.push_back({"orbit.period", option.value, true});
+    } else if (option.key == "start" || option.key == "cycles" || option.key == "kick") {
+        arguments.keys.push_back({"simulate." + option.key, option.value, true});
+    } else if (option.key == "from" || option.key == "to" || option.key == "steps") {
+        arguments.keys.push_back({"sweep." + option.key, option.value, true});
+    } else if (option.key == "chirp") {
+        arguments.keys.push_back({"sweep.mode", "chirp", true});
     }
 }
 

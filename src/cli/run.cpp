@@ -33,6 +33,8 @@ int run_verb(const Arguments& arguments) {
     if (arguments.help) { return print(arguments.verb.empty() ? general_help() : verb_help(arguments.verb)); }
     watch_for_interrupts();
     if (arguments.verb == "check") { return check(arguments); }
+    if (arguments.verb == "simulate") { return simulate(arguments); }
+    if (arguments.verb == "sweep") { return sweep(arguments); }
     if (arguments.verb == "orbit") { return orbit(arguments); }
     if (arguments.verb == "evaluate") { return evaluate(arguments); }
     if (arguments.verb == "optimise") { return optimise(arguments); }

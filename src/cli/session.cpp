@@ -26,8 +26,8 @@ void print(const std::string& text) {
     }
 }
 
-Session::Session(const Arguments& arguments)
-    : problem_(io::read_problem(arguments.problem, arguments.keys)),
+Session::Session(const Arguments& arguments, io::FrequencyUse use)
+    : problem_(io::read_problem(arguments.problem, arguments.keys, use)),
       quiet_(arguments.quiet) {
     study::StudyProblem& study = problem_.study;
     study.seed = arguments.seed.value_or(study.seed);

@@ -20,7 +20,7 @@ void print(const std::string& text);
 class Session {
 public:
     /// Reads the problem and looks at the results folder, without touching it yet. Throws io::ProblemError.
-    explicit Session(const Arguments& arguments);
+    explicit Session(const Arguments& arguments, io::FrequencyUse use = io::FrequencyUse::operates);
 
     [[nodiscard]] const io::ProblemFile& problem() const { return problem_; }
 

@@ -20,17 +20,6 @@ using std::numbers::pi;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-EdgeKind to_edge_kind(boundary::Kind kind) {
-    switch (kind) {
-        case boundary::Kind::none: return EdgeKind::none;
-        case boundary::Kind::grazing: return EdgeKind::grazing;
-        case boundary::Kind::fold: return EdgeKind::fold;
-        case boundary::Kind::flip: return EdgeKind::flip;
-        case boundary::Kind::torus: return EdgeKind::torus;
-    }
-    return EdgeKind::none;
-}
-
 }  // namespace
 
 struct Evaluator::Implementation {

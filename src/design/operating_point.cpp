@@ -34,6 +34,17 @@ Reached reach_below_edge(const flow::System& system, const flow::State& free_sta
 
 }  // namespace
 
+EdgeKind to_edge_kind(boundary::Kind kind) {
+    switch (kind) {
+        case boundary::Kind::none: return EdgeKind::none;
+        case boundary::Kind::grazing: return EdgeKind::grazing;
+        case boundary::Kind::fold: return EdgeKind::fold;
+        case boundary::Kind::flip: return EdgeKind::flip;
+        case boundary::Kind::torus: return EdgeKind::torus;
+    }
+    return EdgeKind::none;
+}
+
 Reached reach_orbit(const flow::System& system, const flow::State& from, int period, bool must_strike) {
     Reached reached;
     reached.kind = Reached::Kind::unsettled;

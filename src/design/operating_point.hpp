@@ -3,6 +3,7 @@
 /// Where a design is driven and the motion it makes there, nondimensional.
 
 #include "boundary/edge.hpp"
+#include "design/evaluation.hpp"
 #include "flow/flow.hpp"
 #include "orbit/orbit.hpp"
 #include "orbit/polish.hpp"
@@ -39,6 +40,9 @@ std::optional<orbit::Orbit> stable_orbit_from(const flow::System& system, const 
 
 /// The orbit continued from one frequency to another by Newton, steps halved on failure. Nothing when it is lost.
 std::optional<orbit::Orbit> continue_orbit(const flow::System& system, const orbit::Orbit& start, double to_omega);
+
+/// The kind of an edge as it is reported.
+EdgeKind to_edge_kind(boundary::Kind kind);
 
 /// The edge of a design, the frequency (1 - margin) below it, and what stands there.
 struct EdgeOperation {

@@ -1,21 +1,17 @@
 #include "io/documents.hpp"
 
 #include "io/derived_parameters.hpp"
+#include "io/json_text.hpp"
 #include "io/setting_table.hpp"
 
 #include <cmath>
-
-#include <nlohmann/json.hpp>
 
 namespace percuss::io {
 
 namespace {
 
-using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using design::Evaluation;
 using design::Quantity;
-
-constexpr int indentation = 2;
 
 Json design_of(const design::Problem& problem) {
     Json out = Json::object();
@@ -102,10 +98,6 @@ Json gradients_of(const Evaluation& evaluation, model::Family family, bool with_
     return out;
 }
 
-Json beginning(const ProblemFile& problem, std::string_view schema) {
-    return {{"schema", schema}, {"units", units_of(problem)}};
-}
-
 Json evaluation_document(const ProblemFile& problem, std::string_view schema, const Evaluation& evaluation,
                          double seconds, bool with_edge) {
     const model::Family family = problem.study.design.actuator.family;
@@ -170,10 +162,6 @@ Json settings_of(const ProblemFile& problem) {
         }
     }
     return out;
-}
-
-std::string printed(const Json& document) {
-    return document.dump(indentation, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace

@@ -32,17 +32,18 @@ bool is_known_trouble(const Troubles& troubles, const std::string& violation) {
     });
 }
 
-void check_values(const design::Problem& problem, Troubles& troubles) {
+void check_values(const design::Problem& problem, FrequencyUse use, Troubles& troubles) {
     for (const std::string& violation : model::violations(problem.actuator)) {
         if (!is_known_trouble(troubles, violation)) { troubles.add(violation); }
     }
-    if (problem.actuator.law == model::StopLaw::none && !model::has_frequency(problem.actuator) &&
-        !is_known_trouble(troubles, "drive.frequency ")) {
+    if (use == FrequencyUse::operates && problem.actuator.law == model::StopLaw::none &&
+        !model::has_frequency(problem.actuator) && !is_known_trouble(troubles, "drive.frequency ")) {
         troubles.add("drive.frequency = edge: stop.law = none leaves no edge to operate at, give a frequency");
     }
 }
 
-ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting> options, bool keep_going) {
+ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting> options, FrequencyUse use,
+                     bool keep_going) {
     const SettingList settings(merge_settings(read_settings(file), options));
     Troubles troubles(keep_going);
     ProblemFile problem;
@@ -55,9 +56,11 @@ ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting>
     read_optimiser(settings, problem.study.optimiser, troubles);
     read_solver(settings, design.solver, troubles);
     read_orbit(settings, design.actuator.family, problem.orbit, troubles);
+    read_simulate(settings, design.actuator.family, problem.simulate, troubles);
+    read_sweep(settings, design.actuator.family, problem.sweep, troubles);
     model::apply_defaults(design.actuator);
     fill_in_variables(design);
-    check_values(design, troubles);
+    check_values(design, use, troubles);
 
     problem.troubles = troubles.list();
     problem.settings = resolve_settings(problem, settings);
@@ -66,12 +69,12 @@ ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting>
 
 }  // namespace
 
-ProblemFile read_problem(const std::filesystem::path& file, std::span<const Setting> options) {
-    return assemble(file, options, false);
+ProblemFile read_problem(const std::filesystem::path& file, std::span<const Setting> options, FrequencyUse use) {
+    return assemble(file, options, use, false);
 }
 
 ProblemFile inspect_problem(const std::filesystem::path& file, std::span<const Setting> options) {
-    return assemble(file, options, true);
+    return assemble(file, options, FrequencyUse::operates, true);
 }
 
 void require_frequency(const ProblemFile& problem) {

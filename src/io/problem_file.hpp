@@ -5,7 +5,9 @@
 #include "io/settings.hpp"
 #include "model/specification.hpp"
 #include "study/orbit.hpp"
+#include "study/simulate.hpp"
 #include "study/study.hpp"
+#include "study/sweep.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -32,13 +34,20 @@ struct ProblemFile {
     std::string name;  ///< file name without folder and ending
     study::StudyProblem study;
     study::OrbitStudy orbit;
+    study::SimulateStudy simulate;
+    study::SweepStudy sweep;
     std::vector<ResolvedSetting> settings;  ///< every key in force, section by section
     std::vector<std::string> troubles;      ///< all that is wrong; always empty from read_problem
 };
 
+/// Whether a verb runs the actuator at its drive frequency or over a range of its own: only the first needs a frequency
+/// or an edge.
+enum class FrequencyUse : std::uint8_t { operates, ranges };
+
 /// Reads a file, lets options win, and checks everything that can be checked without computing. Throws ProblemError
 /// with one sentence that names key, value and what is allowed.
-ProblemFile read_problem(const std::filesystem::path& file, std::span<const Setting> options);
+ProblemFile read_problem(const std::filesystem::path& file, std::span<const Setting> options,
+                         FrequencyUse use = FrequencyUse::operates);
 
 /// The same, but what is missing, out of range or not understood is collected in `troubles` and marked at the
 /// settings. Throws ProblemError only when the file cannot be read or its lines are not settings.

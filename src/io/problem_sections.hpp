@@ -5,8 +5,11 @@
 #include "design/problem.hpp"
 #include "io/setting_list.hpp"
 #include "study/orbit.hpp"
+#include "study/simulate.hpp"
 #include "study/study.hpp"
+#include "study/sweep.hpp"
 
+#include <string>
 #include <string_view>
 
 namespace percuss::io {
@@ -25,6 +28,16 @@ void read_design(const SettingList& settings, design::Problem& problem, Troubles
 void read_optimiser(const SettingList& settings, study::OptimiserOptions& options, Troubles& troubles);
 void read_solver(const SettingList& settings, design::SolverOptions& options, Troubles& troubles);
 void read_orbit(const SettingList& settings, model::Family family, study::OrbitStudy& orbit, Troubles& troubles);
+
+/// [simulate] and [sweep].
+void read_simulate(const SettingList& settings, model::Family family, study::SimulateStudy& study, Troubles& troubles);
+void read_sweep(const SettingList& settings, model::Family family, study::SweepStudy& study, Troubles& troubles);
+
+/// A kick as it is written in problem files; its numbers read back exactly.
+std::string kick_text(const study::Kick& kick, model::Family family);
+
+/// Numbers in a state of this family.
+std::size_t states_of(model::Family family);
 
 /// A number for this key of this family: plain for nondimensional keys, else with an optional unit. Throws
 /// std::invalid_argument.

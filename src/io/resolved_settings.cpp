@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace percuss::io {
 
@@ -83,6 +84,8 @@ public:
         text("solver.instruction_set", design.solver.instruction_set);
         if (problem_.orbit.start) { text("orbit.start", state_text(*problem_.orbit.start)); }
         number("orbit.period", problem_.orbit.period, "");
+        simulate_keys(problem_.simulate, design.actuator.family);
+        sweep_keys(problem_.sweep, design.actuator.family);
         return std::move(resolved_);
     }
 
@@ -113,6 +116,29 @@ private:
         }
         for (const design::Limit& limit : design.limits) { text("design.limit", limit_text(problem_, limit)); }
         text("design.single_stable", std::string(single_stable_text(design.single_stable)));
+    }
+
+    void simulate_keys(const study::SimulateStudy& study, Family family) {
+        const bool given = study.from == study::SimulationStart::state;
+        text("simulate.start", given                                         ? state_text(study.start)
+                               : study.from == study::SimulationStart::orbit ? "orbit"
+                                                                             : "rest");
+        number("simulate.cycles", study.cycles, "");
+        number("simulate.samples", study.samples, "");
+        text("simulate.kick", study.kick ? kick_text(*study.kick, family) : "none");
+    }
+
+    void sweep_keys(const study::SweepStudy& study, Family family) {
+        const bool plain = family == Family::dielectric_elastomer_nondimensional;
+        const double unit = plain ? 1.0 : 2.0 * std::numbers::pi;
+        text("sweep.mode", study.mode == study::SweepMode::chirp ? "chirp" : "steps");
+        if (study.from) { number("sweep.from", *study.from / unit, plain ? "" : "Hz"); }
+        if (study.to) { number("sweep.to", *study.to / unit, plain ? "" : "Hz"); }
+        number("sweep.steps", study.steps, "");
+        number("sweep.tolerance", study.tolerance, "");
+        number("sweep.max_cycles", study.max_cycles, "");
+        number("sweep.longest_period", study.longest_period, "");
+        number("sweep.chirp_cycles", study.chirp_cycles, "");
     }
 
     void number(const std::string& name, double value, std::string_view unit) {

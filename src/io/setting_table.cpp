@@ -4,7 +4,9 @@
 #include "model/number_text.hpp"
 #include "optimise/solve.hpp"
 #include "study/orbit.hpp"
+#include "study/simulate.hpp"
 #include "study/study.hpp"
+#include "study/sweep.hpp"
 
 #include <algorithm>
 
@@ -30,6 +32,43 @@ void add_model_keys(std::vector<SettingInfo>& table, std::string_view section) {
         const auto key = static_cast<model::Key>(i);
         if (model::key_info(key).name.starts_with(section)) { table.push_back(from_model(key)); }
     }
+}
+
+void add_simulate_keys(std::vector<SettingInfo>& table) {
+    const study::SimulateStudy study;
+    table.push_back({"simulate.start", "", "rest, orbit, or numbers separated by commas or blanks", "rest",
+                     "state at theta = 0; orbit: the orbit that verb orbit finds (orbit.start, orbit.period)"});
+    table.push_back({"simulate.cycles", "", "whole number, at least 1", std::to_string(study.cycles),
+                     "length of the series in drive cycles"});
+    table.push_back({"simulate.samples", "", "whole number, at least 1", std::to_string(study.samples),
+                     "rows of the series per drive cycle"});
+    table.push_back({"simulate.kick", "",
+                     "velocity VALUE at cycle N, or voltage SHARE for N cycles at cycle N (force SHARE ... of a "
+                     "spring-mass system), or none",
+                     "none",
+                     "a disturbance: x' jumps by VALUE (m/s), or the drive is SHARE (50 %) of itself for N cycles; "
+                     "N may be a fraction"});
+}
+
+void add_sweep_keys(std::vector<SettingInfo>& table) {
+    const study::SweepStudy study;
+    const std::string frequency = "above 0; omega of a nondimensional problem; spring-mass also in rad/s";
+    table.push_back({"sweep.from", "Hz", frequency, "0.6 linear resonance", "lowest drive frequency"});
+    table.push_back({"sweep.to", "Hz", frequency, "2 linear resonance", "highest drive frequency"});
+    table.push_back({"sweep.mode", "", "steps | chirp", "steps",
+                     "steps: settle at every frequency, on from the state of the one before; chirp: never settle, the "
+                     "frequency moves on with every drive cycle at a constant rate in time"});
+    table.push_back({"sweep.steps", "", "whole number, at least 1", std::to_string(study.steps),
+                     "frequency steps in each direction"});
+    table.push_back({"sweep.tolerance", "", "above 1e-12, below 0.01", model::number_text(study.tolerance),
+                     "a motion has settled when its strobed change and the error c rho/(1 - rho) estimated from the "
+                     "change c and its contraction rho are below this, relative to 1 + |state|"});
+    table.push_back({"sweep.max_cycles", "", "whole number, at least 1", std::to_string(study.max_cycles),
+                     "drive cycles to wait for that at each frequency"});
+    table.push_back({"sweep.longest_period", "", "whole number, at least 1, at most 12",
+                     std::to_string(study.longest_period), "repeats after up to so many drive cycles are recognised"});
+    table.push_back({"sweep.chirp_cycles", "", "whole number, at least 1", std::to_string(study.chirp_cycles),
+                     "drive cycles of a chirp in each direction"});
 }
 
 std::vector<SettingInfo> make_table() {
@@ -81,6 +120,8 @@ std::vector<SettingInfo> make_table() {
                      "state at theta = 0 that Newton's method starts from"});
     table.push_back({"orbit.period", "", "whole number, at least 1", std::to_string(orbit.period),
                      "period of the orbit in drive cycles"});
+    add_simulate_keys(table);
+    add_sweep_keys(table);
     return table;
 }
 

@@ -8,8 +8,8 @@ namespace percuss::numerics {
 namespace {
 
 /// The square matrix with the Jacobian above and one more row below.
-SmallMatrix bordered(const SmallMatrix& jacobian, const SmallVector& row) {
-    SmallMatrix m(row.size(), row.size());
+Matrix bordered(const Matrix& jacobian, const Vector& row) {
+    Matrix m(row.size(), row.size());
     m.topRows(jacobian.rows()) = jacobian;
     m.bottomRows(1) = row.transpose();
     return m;
@@ -21,24 +21,29 @@ ArclengthWalker::ArclengthWalker(CurveFunction function, ArclengthOptions option
     : function_(std::move(function)),
       options_(options) {}
 
-bool ArclengthWalker::solve_tangent(const SmallVector& orientation) {
-    SmallVector right = SmallVector::Zero(orientation.size());
+bool ArclengthWalker::solve_tangent(const Vector& orientation) {
+    Vector right = Vector::Zero(orientation.size());
     right[right.size() - 1] = 1.0;
-    const SmallVector t = bordered(jacobian_, orientation).partialPivLu().solve(right);
+    const Vector t = bordered(jacobian_, orientation).partialPivLu().solve(right);
     if (!t.allFinite()) { return false; }
     tangent_ = t.normalized();
     return true;
 }
 
-bool ArclengthWalker::start(const SmallVector& u, double direction) {
-    SmallVector along = SmallVector::Zero(u.size());
+bool ArclengthWalker::start(const Vector& u, double direction) {
+    Vector along = Vector::Zero(u.size());
     along[u.size() - 1] = direction;
+    return start_along(u, along);
+}
+
+bool ArclengthWalker::start_along(const Vector& u, const Vector& direction) {
+    const Vector along = direction.normalized();
     u_ = u;
     for (int iteration = 0; iteration < 3 * options_.newton_iterations; ++iteration) {
         if (!function_(u_, f_, jacobian_)) { return false; }
-        SmallVector right = SmallVector::Zero(u.size());
+        Vector right = Vector::Zero(u.size());
         right.head(f_.size()) = -f_;
-        const SmallVector du = bordered(jacobian_, along).partialPivLu().solve(right);
+        const Vector du = bordered(jacobian_, along).partialPivLu().solve(right);
         if (!du.allFinite()) { return false; }
         const double scale = 1.0 + u_.norm();
         if (f_.norm() <= options_.tolerance * scale && du.norm() <= 1e-6 * scale) {
@@ -47,6 +52,30 @@ bool ArclengthWalker::start(const SmallVector& u, double direction) {
             return solve_tangent(along);
         }
         u_ += du;
+    }
+    return false;
+}
+
+bool ArclengthWalker::probe(double step, Vector& u, Vector& tangent) {
+    u = u_ + step * tangent_;
+    const Vector predicted = u;
+    Matrix jacobian;
+    for (int iteration = 0; iteration < options_.newton_iterations; ++iteration) {
+        if (!function_(u, f_, jacobian)) { return false; }
+        Vector right(u.size());
+        right.head(f_.size()) = -f_;
+        right[right.size() - 1] = -tangent_.dot(u - predicted);
+        const auto lu = bordered(jacobian, tangent_).partialPivLu();
+        const Vector du = lu.solve(right);
+        if (!du.allFinite()) { return false; }
+        const double scale = 1.0 + u.norm();
+        if (f_.norm() <= options_.tolerance * scale && du.norm() <= options_.step_tolerance * scale) {
+            Vector unit = Vector::Zero(u.size());
+            unit[unit.size() - 1] = 1.0;
+            tangent = lu.solve(unit).normalized();
+            return tangent.allFinite();
+        }
+        u += du;
     }
     return false;
 }
@@ -61,10 +90,10 @@ ArclengthWalker::Correction ArclengthWalker::correct() {
     candidate_ = predicted_;
     for (int iteration = 0; iteration < options_.newton_iterations; ++iteration) {
         if (!function_(candidate_, f_, candidate_jacobian_)) { return Correction::rejected; }
-        SmallVector right(candidate_.size());
+        Vector right(candidate_.size());
         right.head(f_.size()) = -f_;
         right[right.size() - 1] = -tangent_.dot(candidate_ - predicted_);
-        const SmallVector du = bordered(candidate_jacobian_, tangent_).partialPivLu().solve(right);
+        const Vector du = bordered(candidate_jacobian_, tangent_).partialPivLu().solve(right);
         if (!du.allFinite()) { return Correction::rejected; }
         const double scale = 1.0 + candidate_.norm();
         if ((candidate_ - predicted_).norm() > options_.largest_correction * step_) { return Correction::rejected; }
@@ -90,7 +119,7 @@ bool ArclengthWalker::advance() {
             continue;
         }
         std::swap(jacobian_, candidate_jacobian_);
-        const SmallVector old_tangent = tangent_;
+        const Vector old_tangent = tangent_;
         const bool sound = solve_tangent(old_tangent);
         const double angle = sound ? std::acos(std::clamp(old_tangent.dot(tangent_), -1.0, 1.0)) : 10.0;
         if (!sound || angle > options_.largest_angle) {

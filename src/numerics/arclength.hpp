@@ -10,7 +10,7 @@
 namespace percuss::numerics {
 
 /// F and its n x (n+1) Jacobian at u; false when it cannot be evaluated there.
-using CurveFunction = std::function<bool(const SmallVector& u, SmallVector& f, SmallMatrix& jacobian)>;
+using CurveFunction = std::function<bool(const Vector& u, Vector& f, Matrix& jacobian)>;
 
 struct ArclengthOptions {
     double first_step = 0.05;
@@ -33,7 +33,14 @@ public:
 
     /// Starts from a point near the curve; the parameter is the last entry of u. `direction` is the sign of its first
     /// change. False when Newton does not converge.
-    bool start(const SmallVector& u, double direction);
+    bool start(const Vector& u, double direction);
+    /// The same with any direction to set out in: the point is sought at right angles to it from u, and the curve then
+    /// followed to the side it points to. With a unit vector that entry of u is held.
+    bool start_along(const Vector& u, const Vector& direction);
+
+    /// A point of the curve at this arclength (predicted; of either sign) from the current one, and the tangent there.
+    /// The walker itself stays. False when the corrector does not converge.
+    [[nodiscard]] bool probe(double step, Vector& u, Vector& tangent);
 
     /// One accepted step; false when the step length has collapsed.
     bool advance();
@@ -42,10 +49,11 @@ public:
     /// to or the step has become too small.
     bool retreat();
 
-    [[nodiscard]] const SmallVector& point() const { return u_; }
-    [[nodiscard]] const SmallVector& tangent() const { return tangent_; }
-    [[nodiscard]] const SmallMatrix& jacobian() const { return jacobian_; }
+    [[nodiscard]] const Vector& point() const { return u_; }
+    [[nodiscard]] const Vector& tangent() const { return tangent_; }
+    [[nodiscard]] const Matrix& jacobian() const { return jacobian_; }
     [[nodiscard]] double step() const { return step_; }
+    void set_step(double step) { step_ = step; }
     void limit_step(double largest) { step_ = std::min(step_, largest); }
 
 private:
@@ -54,15 +62,15 @@ private:
     void predict();
     Correction correct();
     void adapt(double angle);
-    bool solve_tangent(const SmallVector& orientation);
+    bool solve_tangent(const Vector& orientation);
 
     CurveFunction function_;
     ArclengthOptions options_;
-    SmallVector u_, tangent_, predicted_, candidate_;
-    SmallVector f_;
-    SmallMatrix jacobian_, candidate_jacobian_;
-    SmallVector previous_u_, previous_tangent_;
-    SmallMatrix previous_jacobian_;
+    Vector u_, tangent_, predicted_, candidate_;
+    Vector f_;
+    Matrix jacobian_, candidate_jacobian_;
+    Vector previous_u_, previous_tangent_;
+    Matrix previous_jacobian_;
     double step_ = 0.0;
     double last_step_ = 0.0;
     bool has_previous_ = false;

@@ -24,29 +24,32 @@ flow::State entry_state(const flow::System& system, const ContactUnknowns& conta
     return y;
 }
 
-/// Phase from the end of contact i to the entry of the next one.
-double flight_duration(const ContactSequence& sequence, std::size_t i) {
+/// Phase from the end of contact i to the entry of the next one; after the last it is that of `closing`.
+double flight_duration(const ContactSequence& sequence, std::size_t i, const ContactUnknowns& closing) {
     const ContactUnknowns& here = sequence.contacts[i];
     const bool last = i + 1 == sequence.contacts.size();
-    const double next = last ? sequence.contacts[0].phase + 2.0 * pi * sequence.period : sequence.contacts[i + 1].phase;
+    const double next = last ? closing.phase + 2.0 * pi * sequence.period : sequence.contacts[i + 1].phase;
     return next - here.phase - here.duration;
 }
 
 /// A wild Newton step must not send the integrator off for thousands of cycles: contact and flight fit in one period.
-bool plausible(const ContactSequence& sequence, std::size_t i) {
+bool plausible(const ContactSequence& sequence, std::size_t i, const ContactUnknowns& closing) {
     const double whole = 2.0 * pi * sequence.period;
-    const double flight = flight_duration(sequence, i);
+    const double flight = flight_duration(sequence, i, closing);
     return std::abs(sequence.contacts[i].duration) < whole && flight > 0.0 && flight < 1.1 * whole;
 }
 
 /// One contact and the flight after it, with everything's derivatives placed in the big matrices.
 class Leg {
 public:
-    Leg(const flow::System& system, const ContactSequence& sequence, std::size_t i,
+    Leg(const flow::System& system, const ContactSequence& sequence, std::size_t i, const ContactUnknowns& closing,
         std::span<const flow::ParameterVector> directions)
         : system_(system),
           sequence_(sequence),
           i_(i),
+          last_(i + 1 == sequence.contacts.size()),
+          target_(last_ ? closing : sequence.contacts[i + 1]),
+          flight_duration_(flight_duration(sequence, i, closing)),
           directions_(directions),
           n_(system.states()) {}
 
@@ -56,7 +59,7 @@ public:
         const int block = n_ + 1;
         const int row = static_cast<int>(i_) * block;
         const int here = row;
-        const int next = (i_ + 1 == sequence_.contacts.size()) ? 0 : here + block;
+        const int next = last_ ? 0 : here + block;
         const bool on_force = system_.integrator->info().releases_on_force;
         const flow::Sensitive& closing = on_force ? contact_.divided_force : contact_.divided_gap;
         const int first_parameter = n_;  // lanes of the contact: speed, rest..., phase, parameters
@@ -70,8 +73,7 @@ public:
         }
 
         // Flight residual: x - x_stop, v - v', q - q'.
-        const ContactUnknowns& target = sequence_.contacts[(i_ + 1) % sequence_.contacts.size()];
-        const flow::State wanted = entry_state(system_, target);
+        const flow::State wanted = entry_state(system_, target_);
         for (int k = 0; k < n_; ++k) {
             const int r = row + 1 + k;
             const auto& d = flight_.state_d[index(k)];  // lanes: states, phase, parameters
@@ -91,9 +93,13 @@ public:
             for (int m = 2; m < n_; ++m) { out.by_unknowns(r, here + at_rest + m - 2) += through(m - 1); }
             out.by_unknowns(r, here + at_phase) += through(n_ - 1) + by_phase - rate;
             out.by_unknowns(r, here + at_duration) += by_end - rate;
-            out.by_unknowns(r, next + at_phase) += rate;
-            if (k == 1) { out.by_unknowns(r, next + at_speed) -= 1.0; }
-            if (k >= 2) { out.by_unknowns(r, next + at_rest + k - 2) -= 1.0; }
+            const auto by_target = [&](int offset, double d_target) {
+                out.by_unknowns(r, next + offset) += d_target;
+                if (last_) { out.by_closing(r, next + offset) += d_target; }
+            };
+            by_target(at_phase, rate);
+            if (k == 1) { by_target(at_speed, -1.0); }
+            if (k >= 2) { by_target(at_rest + k - 2, -1.0); }
             for (std::size_t p = 0; p < directions_.size(); ++p) {
                 double sum = through(first_parameter + static_cast<int>(p)) + d[index(n_ + 1) + p];
                 if (k == 0) { sum -= system_.integrator->stop_position_derivative(system_.parameters, directions_[p]); }
@@ -133,7 +139,7 @@ private:
         flow::Request request;
         request.state = contact_.state;
         request.theta = contact.phase + contact.duration;
-        request.duration = flight_duration(sequence_, i_);
+        request.duration = flight_duration_;
         request.stop = flow::StopMode::off;
         request.directions = std::span(lanes.data(), index(n_ + 1) + directions_.size());
         system_.run(request, flight_);
@@ -164,6 +170,9 @@ private:
     const flow::System& system_;
     const ContactSequence& sequence_;
     std::size_t i_;
+    bool last_;
+    const ContactUnknowns& target_;
+    double flight_duration_;
     std::span<const flow::ParameterVector> directions_;
     int n_;
     flow::Result contact_, flight_;
@@ -200,16 +209,19 @@ ContactSequence unpack(const flow::System& system, const Vector& z, int period) 
 }
 
 std::optional<SequenceResidual> evaluate(const flow::System& system, const ContactSequence& sequence,
-                                         std::span<const flow::ParameterVector> directions) {
+                                         std::span<const flow::ParameterVector> directions,
+                                         const ContactUnknowns* closing) {
     if (directions.size() > 3) { throw std::invalid_argument("contact sequence: more than 3 directions"); }
     const int size = sequence.unknowns(system);
     SequenceResidual out;
     out.value = Vector::Zero(size);
     out.by_unknowns = Matrix::Zero(size, size);
+    out.by_closing = Matrix::Zero(size, size);
     out.by_directions = Matrix::Zero(size, static_cast<int>(directions.size()));
+    const ContactUnknowns& target = closing != nullptr ? *closing : sequence.contacts.front();
     for (std::size_t i = 0; i < sequence.contacts.size(); ++i) {
-        if (!plausible(sequence, i)) { return std::nullopt; }
-        Leg leg(system, sequence, i, directions);
+        if (!plausible(sequence, i, target)) { return std::nullopt; }
+        Leg leg(system, sequence, i, target, directions);
         if (!leg.run()) { return std::nullopt; }
         leg.place(out);
     }

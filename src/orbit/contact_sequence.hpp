@@ -42,10 +42,15 @@ ContactSequence unpack(const flow::System& system, const numerics::Vector& z, in
 struct SequenceResidual {
     numerics::Vector value;
     numerics::Matrix by_unknowns;
+    /// The part of by_unknowns that comes from the first contact as the end of the last flight, one period later:
+    /// by_unknowns + (mu - 1) by_closing is singular where mu is a Floquet multiplier.
+    numerics::Matrix by_closing;
     numerics::Matrix by_directions;
 };
+/// closing: the contact that the last flight shall end in, one period later; the first one unless given.
 std::optional<SequenceResidual> evaluate(const flow::System& system, const ContactSequence& sequence,
-                                         std::span<const flow::ParameterVector> directions);
+                                         std::span<const flow::ParameterVector> directions,
+                                         const ContactUnknowns* closing = nullptr);
 
 /// The sequence of an orbit whose contacts were recorded over one map from a phase in flight; empty when a contact is
 /// open at the ends.

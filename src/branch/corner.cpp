@@ -1,0 +1,197 @@
+#include "branch/corner.hpp"
+
+#include "boundary/critical.hpp"
+#include "orbit/polish.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace percuss::branch {
+namespace {
+
+using boundary::Kind;
+using numerics::Vector;
+using orbit::Form;
+using orbit::Motion;
+using std::numbers::pi;
+
+/// Entry speed, relative to size x omega, at which a contact is looked at beside its grazing point: the parameter moves
+/// with the square of it.
+constexpr double small_speed = 1e-6;
+
+double slow(const flow::Family& family, double parameter, const TraceOptions& options) {
+    return small_speed * options.size * family.at(parameter).omega();
+}
+
+/// The sequence with one contact at a very small speed, next to its grazing motion.
+std::optional<Standing> stand_near(const flow::Family& family, const Motion& grazing, double parameter, int contact,
+                                   const TraceOptions& options) {
+    Motion motion = grazing;
+    motion.sequence.contacts[static_cast<std::size_t>(contact)].speed = slow(family, parameter, options);
+    Piece piece(family, motion, options.size, options.steps);
+    if (!piece.start_with_speed(motion, parameter, contact)) { return std::nullopt; }
+    Look seen = look(family, piece.motion(), piece.parameter());
+    if (!seen.ok()) { return std::nullopt; }
+    return Standing{piece.point(), piece.slope(), std::move(seen.point)};
+}
+
+/// The same motion without one of its contacts.
+Motion without(const flow::System& system, const Motion& motion, int contact, const Point& near) {
+    Motion rest = motion;
+    auto& contacts = rest.sequence.contacts;
+    contacts.erase(contacts.begin() + contact);
+    if (!contacts.empty()) { return rest; }
+    rest.form = Form::free;
+    orbit::Orbit orbit;
+    orbit.map.stop = flow::StopMode::off;
+    orbit.map.period = motion.period;
+    orbit.map.phase = near.phase;
+    orbit.state = near.state;
+    rest.state = orbit::state_at_zero(system, orbit);
+    rest.phase = 0.0;
+    if (motion.period == 1) {
+        orbit::ReturnMap half;
+        half.stop = flow::StopMode::off;
+        half.mirrored = true;
+        const orbit::Image image = orbit::apply(system, half, rest.state, orbit::Differentiate::nothing);
+        rest.mirrored =
+            image.ok() && (orbit::to_vector(system, image.state) - orbit::to_vector(system, rest.state)).norm() < 1e-6;
+    }
+    return rest;
+}
+
+/// The way along the branch on which the motion has the contacts of its form and no other.
+std::optional<double> real_side(const flow::Family& family, const Motion& motion, double parameter,
+                                const TraceOptions& options, double preferred) {
+    for (double step : {1e-3, 1e-2, 1e-4}) {
+        for (double direction : {preferred, -preferred}) {
+            Piece piece(family, motion, options.size, options.steps);
+            if (!piece.start(motion, parameter, direction)) { continue; }
+            piece.set_step(step);
+            if (!piece.advance()) { continue; }
+            const Look seen = look(family, piece.motion(), piece.parameter());
+            const bool leaves = contact_leaving(piece.motion()) != no_contact;
+            if (seen.ok() && !leaves && seen.point.contacts.size() == motion.contacts()) { return direction; }
+        }
+    }
+    return std::nullopt;
+}
+
+/// The contact that the hybrid flow met and the sequence does not have: the one furthest in phase from all of its own.
+flow::Contact unexpected(const Point& seen) {
+    const double whole = 2.0 * pi * seen.motion.period;
+    const flow::Contact* found = &seen.contacts.front();
+    double furthest = -1.0;
+    for (const flow::Contact& contact : seen.contacts) {
+        double nearest = 1e300;
+        for (const auto& own : seen.motion.sequence.contacts) {
+            nearest = std::min(nearest, std::abs(std::remainder(contact.theta_in - own.phase, whole)));
+        }
+        if (nearest > furthest) {
+            furthest = nearest;
+            found = &contact;
+        }
+    }
+    return *found;
+}
+
+/// The motion as a sequence with one more contact, of no speed, in its place by phase; its index.
+std::pair<Motion, int> with_contact(const flow::System& system, const Motion& motion, const flow::Contact& met) {
+    Motion more = motion;
+    more.form = Form::sequence;
+    more.mirrored = false;
+    more.sequence.period = motion.period;
+    orbit::ContactUnknowns contact;
+    contact.phase = met.theta_in;
+    for (std::size_t k = 2; k < static_cast<std::size_t>(system.states()); ++k) {
+        contact.rest[k - 2] = met.state_in[k];
+    }
+    auto& contacts = more.sequence.contacts;
+    if (!contacts.empty()) {
+        const double whole = 2.0 * pi * motion.period;
+        double after = std::fmod(contact.phase - contacts.front().phase, whole);
+        if (after < 0.0) { after += whole; }
+        contact.phase = contacts.front().phase + after;
+    }
+    const auto place =
+        std::find_if(contacts.begin(), contacts.end(), [&](const auto& other) { return other.phase > contact.phase; });
+    const int index = static_cast<int>(place - contacts.begin());
+    contacts.insert(place, contact);
+    return {more, index};
+}
+
+}  // namespace
+
+int contact_leaving(const Motion& motion) {
+    int leaving = no_contact;
+    double lowest = 0.0;
+    for (std::size_t i = 0; i < motion.contacts(); ++i) {
+        if (motion.sequence.contacts[i].speed <= lowest) {
+            lowest = motion.sequence.contacts[i].speed;
+            leaving = static_cast<int>(i);
+        }
+    }
+    return leaving;
+}
+
+std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, const Standing& last, int contact,
+                                    const TraceOptions& options) {
+    const auto at = static_cast<Eigen::Index>(contact) * piece.motion().sequence.unknowns_per_contact(family.base);
+    const double before = last.u[at];
+    const double beyond = piece.point()[at];
+    const Vector guess = last.u + before / (before - beyond) * (piece.point() - last.u);
+    const auto grazing = boundary::solve_critical(family, Kind::grazing, piece.motion_of(guess),
+                                                  piece.parameter_of(guess), contact, 0.0, options.size);
+    if (!grazing.ok()) { return std::nullopt; }
+    auto near = stand_near(family, grazing.motion, grazing.parameter, contact, options);
+    if (!near) { return std::nullopt; }
+    near->slope = -near->slope;  // travelled towards lower speed
+    Corner corner;
+    corner.at = near->point;
+    corner.at.parameter = grazing.parameter;
+    corner.at.omega = family.at(grazing.parameter).omega();
+    corner.contact = contact;
+    corner.uncertainty = 1e-12 * std::abs(grazing.parameter);
+    const flow::System system = family.at(grazing.parameter);
+    Motion rest = without(system, grazing.motion, contact, near->point);
+    const auto solved = orbit::solve(system, rest);
+    if (!solved) { return std::nullopt; }
+    const auto direction = real_side(family, *solved, grazing.parameter, options, piece.slope() < 0.0 ? -1.0 : 1.0);
+    if (!direction) { return std::nullopt; }
+    corner.near = std::move(*near);
+    corner.onward = {*solved, grazing.parameter, *direction, {}};
+    return corner;
+}
+
+std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, const Standing& last, const Point& seen,
+                                    const TraceOptions& options) {
+    const auto [guess, contact] = with_contact(family.at(seen.parameter), seen.motion, unexpected(seen));
+    const auto grazing =
+        boundary::solve_critical(family, Kind::grazing, guess, seen.parameter, contact, 0.0, options.size);
+    if (!grazing.ok()) { return std::nullopt; }
+    auto near = stand_near(family, grazing.motion, grazing.parameter, contact, options);
+    if (!near) { return std::nullopt; }
+    // The old form at the grazing point, between the last point and the one beyond.
+    const double way = seen.parameter - last.point.parameter;
+    const double share = way != 0.0 ? (grazing.parameter - last.point.parameter) / way : 1.0;
+    if (!(share > -0.5 && share < 1.5)) { return std::nullopt; }
+    const Vector between = last.u + share * (piece.point() - last.u);
+    const flow::System system = family.at(grazing.parameter);
+    const auto old_form = orbit::solve(system, piece.motion_of(between));
+    if (!old_form) { return std::nullopt; }
+    Look before = look(family, *old_form, grazing.parameter);
+    if (before.status == Look::Status::flow_failed) { return std::nullopt; }
+    Corner corner;
+    corner.at = near->point;
+    corner.at.parameter = grazing.parameter;
+    corner.at.omega = family.at(grazing.parameter).omega();
+    corner.contact = contact;
+    corner.uncertainty = 1e-12 * std::abs(grazing.parameter);
+    corner.before = {piece.scaled(*old_form, grazing.parameter), piece.slope(), std::move(before.point)};
+    corner.onward = {near->point.motion, near->point.parameter, 1.0, {}};
+    corner.entering_contact = contact;
+    return corner;
+}
+
+}  // namespace percuss::branch

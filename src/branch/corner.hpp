@@ -1,0 +1,36 @@
+#pragma once
+/// \file
+/// Grazing points on a branch: where one contact more or less begins, and how the branch goes on from there.
+
+#include "branch/locate.hpp"
+#include "branch/trace.hpp"
+
+#include <optional>
+
+namespace percuss::branch {
+
+struct Corner {
+    Point at;  ///< the grazing motion
+    double uncertainty = 0.0;
+    int contact = 0;  ///< which of the grazing motion's contacts touches
+    /// Leaving: the sequence with the contact at a very small speed, in front of the corner. Its parameter is 0 where
+    /// it could not be looked at.
+    Standing near;
+    Standing before;  ///< entering: the grazing motion in the form without the contact
+    Departure onward;
+    int entering_contact = -1;  ///< in the sequence of `onward`; -1 when a contact has left
+};
+
+inline constexpr int no_contact = -1;
+/// The contact whose entry speed has become negative: the one furthest beyond grazing.
+int contact_leaving(const orbit::Motion& motion);
+
+/// From `last` the piece has stepped to where this contact's entry speed is negative.
+std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, const Standing& last, int contact,
+                                    const TraceOptions& options);
+
+/// From `last` the piece has stepped to where the hybrid flow meets a contact that the form does not have (`seen`).
+std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, const Standing& last, const Point& seen,
+                                    const TraceOptions& options);
+
+}  // namespace percuss::branch

@@ -1,0 +1,186 @@
+#include "branch/locus.hpp"
+
+#include "boundary/critical.hpp"
+#include "branch/corner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace percuss::branch {
+namespace {
+
+using boundary::CriticalEquations;
+using boundary::Kind;
+using numerics::ArclengthWalker;
+using numerics::Matrix;
+using numerics::Vector;
+
+class Follower {
+public:
+    Follower(const flow::Family& family, const BoundaryPoint& start, const LocusOptions& options)
+        : family_(family),
+          options_(options),
+          start_(start),
+          equations_(family, start.kind, start.point.motion, start.contact, options.size),
+          walker_([this](const Vector& u, Vector& f, Matrix& j) { return equations_.evaluate(u, {}, f, j); },
+                  {.first_step = 0.02,
+                   .largest_step = 0.25,
+                   .largest_parameter_step = 0.1,
+                   .target_angle = 0.12,
+                   .tolerance = 1e-8,
+                   .step_tolerance = 1e-6}) {}
+
+    Locus run() {
+        const std::array<double, 2> p = {start_.point.omega, options_.from};
+        const Vector u = equations_.pack(start_.point.motion, start_.angle, p);
+        if (!walker_.start(u, options_.to > options_.from ? 1.0 : -1.0)) {
+            lose("Newton's method on the boundary's equations did not converge at the start");
+            return std::move(locus_);
+        }
+        add(walker_.point());
+        while (can_continue()) { step(); }
+        return std::move(locus_);
+    }
+
+private:
+    [[nodiscard]] bool can_continue() {
+        if (locus_.end != End::not_run) { return false; }
+        if (static_cast<int>(locus_.points.size()) >= options_.max_points || (options_.stop && options_.stop())) {
+            locus_.end = End::budget;
+            locus_.end_reason = "as many points as were allowed";
+            return false;
+        }
+        return true;
+    }
+
+    void lose(std::string reason) {
+        locus_.end = End::lost;
+        locus_.end_reason = std::move(reason);
+    }
+
+    void step() {
+        const Vector before = walker_.point();
+        const Vector tangent_before = walker_.tangent();
+        if (!walker_.advance()) { return lose("the step length collapsed"); }
+        const Vector& u = walker_.point();
+        const orbit::Motion motion = equations_.motion(u);
+        if (start_.kind != Kind::grazing && contact_leaving(motion) != no_contact) {
+            // Near grazing the speed is tiny beside everything else: the step may only have been too long.
+            if (walker_.step() > shortest_step && walker_.retreat()) { return; }
+            return lose("the motion grazes: the boundary ends on a grazing curve");
+        }
+        note_turn(before, tangent_before);
+        add_exact(before, u);
+        const std::vector<double> p = equations_.parameters(u);
+        const double low = std::min(options_.from, options_.to);
+        const double high = std::max(options_.from, options_.to);
+        if (p[1] < low || p[1] > high) {
+            add_at(before, u, p[1] < low ? low : high);
+            locus_.end = End::range;
+        } else if (p[0] < options_.lowest_omega || p[0] > options_.highest_omega) {
+            locus_.end = End::range;
+            locus_.end_reason = "the drive frequency left its range";
+        } else {
+            add(u);
+        }
+    }
+
+    /// Sign change of the value's slope: refined along the arc by the secant method. At a cusp the frequency's slope
+    /// passes through zero with it, as the curve's tangent is there the null vector of the fold.
+    void note_turn(const Vector& before, const Vector& tangent_before) {
+        const auto last = tangent_before.size() - 1;
+        const double slope_before = tangent_before[last];
+        const double slope = walker_.tangent()[last];
+        if (slope_before * slope >= 0.0) { return; }
+        double low = -(walker_.point() - before).norm();
+        double high = 0.0;
+        double f_low = slope_before;
+        double f_high = slope;
+        Vector u = walker_.point();
+        Vector tangent = walker_.tangent();
+        for (int iteration = 0; iteration < 30 && high - low > 1e-9; ++iteration) {
+            double at = low - f_low * (high - low) / (f_high - f_low);
+            if (iteration % 3 == 2) { at = 0.5 * (low + high); }
+            if (!walker_.probe(at, u, tangent)) { break; }
+            ++locus_.solves;
+            if (tangent[last] * f_low > 0.0) {
+                low = at;
+                f_low = tangent[last];
+            } else {
+                high = at;
+                f_high = tangent[last];
+            }
+            if (std::abs(tangent[last]) < 1e-10) { break; }
+        }
+        const std::vector<double> p = equations_.parameters(u);
+        const bool omega_turns = tangent_before[last - 1] * walker_.tangent()[last - 1] < 0.0;
+        locus_.turns.push_back(
+            {p[0], p[1], start_.kind == Kind::fold && omega_turns && std::abs(tangent[last - 1]) < 1e-4});
+    }
+
+    void add_exact(const Vector& a, const Vector& b) {
+        const double va = equations_.parameters(a)[1];
+        const double vb = equations_.parameters(b)[1];
+        std::vector<double> passed;
+        for (double value : options_.exact) {
+            if ((value - va) * (value - vb) < 0.0) { passed.push_back(value); }
+        }
+        std::sort(passed.begin(), passed.end(), [&](double x, double y) { return (x < y) == (va < vb); });
+        for (double value : passed) { add_at(a, b, value); }
+    }
+
+    /// The boundary at a value between two points, solved for in the frequency.
+    void add_at(const Vector& a, const Vector& b, double value) {
+        const double va = equations_.parameters(a)[1];
+        const double vb = equations_.parameters(b)[1];
+        const Vector guess = a + (value - va) / (vb - va) * (b - a);
+        flow::Family by_omega;
+        by_omega.base = family_.base;
+        by_omega.units = {family_.units.front()};
+        by_omega.parameters = [this, value](std::span<const double> p) {
+            return family_.parameters(std::array<double, 2>{p[0], value});
+        };
+        by_omega.directions = [this, value](std::span<const double> p) {
+            auto both = family_.directions(std::array<double, 2>{p[0], value});
+            both.resize(1);
+            return both;
+        };
+        const double omega = equations_.parameters(guess)[0];
+        const auto exact = boundary::solve_critical(by_omega, start_.kind, equations_.motion(guess), omega,
+                                                    start_.contact, equations_.angle(guess), options_.size);
+        ++locus_.solves;
+        if (!exact.ok() || std::abs(exact.parameter - omega) > 0.05 * omega) { return; }
+        add_point(exact.motion, exact.parameter, value, exact.angle);
+    }
+
+    void add(const Vector& u) {
+        const std::vector<double> p = equations_.parameters(u);
+        add_point(equations_.motion(u), p[0], p[1], equations_.angle(u));
+    }
+
+    void add_point(const orbit::Motion& motion, double omega, double value, double angle) {
+        ++locus_.solves;
+        const flow::Family fixed = flow::along_frequency(
+            family_.base.with(family_.parameters(std::array<double, 2>{omega, value})), family_.units.front());
+        const Look seen = look(fixed, motion, omega);
+        const double force = start_.kind == Kind::grazing && motion.contacts() == 1 ? 0.0 : seen.point.peak_force;
+        locus_.points.push_back({omega, value, force, angle, motion});
+    }
+
+    static constexpr double shortest_step = 1e-7;
+
+    const flow::Family& family_;
+    const LocusOptions& options_;
+    const BoundaryPoint& start_;
+    CriticalEquations equations_;
+    ArclengthWalker walker_;
+    Locus locus_;
+};
+
+}  // namespace
+
+Locus follow_boundary(const flow::Family& family, const BoundaryPoint& start, const LocusOptions& options) {
+    return Follower(family, start, options).run();
+}
+
+}  // namespace percuss::branch

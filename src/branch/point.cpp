@@ -1,0 +1,86 @@
+#include "branch/point.hpp"
+
+#include "orbit/polish.hpp"
+
+#include <cmath>
+
+namespace percuss::branch {
+namespace {
+
+void count_unstable(Point& point) {
+    for (const auto& mu : point.map_multipliers) {
+        if (!(std::abs(mu) > 1.0)) { continue; }
+        const bool real = std::abs(mu.imag()) <= 1e-10 * std::abs(mu);
+        if (!real) {
+            point.pairs_beyond += mu.imag() > 0.0 ? 1 : 0;
+        } else if (mu.real() > 0.0) {
+            ++point.beyond_plus;
+        } else {
+            ++point.beyond_minus;
+        }
+    }
+}
+
+std::vector<flow::Contact> contacts_met(const flow::System& system, const Point& point) {
+    flow::Request request;
+    request.state = point.state;
+    request.theta = point.phase;
+    orbit::ReturnMap map;
+    map.period = point.motion.period;
+    request.duration = map.duration();
+    flow::Result result;
+    system.run(request, result);
+    if (result.status != flow::Status::ok) { return {}; }
+    return result.contacts;
+}
+
+}  // namespace
+
+Look look(const flow::Family& family, const orbit::Motion& motion, double parameter) {
+    Look result;
+    const flow::System system = family.at(parameter);
+    auto strobed = orbit::strobe(system, motion);
+    if (!strobed) { return result; }
+    Point& point = result.point;
+    point.parameter = parameter;
+    point.omega = system.omega();
+    point.motion = motion;
+    point.state = strobed->state;
+    point.phase = strobed->map.phase;
+    orbit::Image image = orbit::apply(system, strobed->map, strobed->state, orbit::Differentiate::state, {},
+                                      flow::observe_extrema | flow::observe_force);
+    if (!image.ok()) { return result; }
+    point.x_max = image.observed[orbit::x_max].value;
+    point.x_min = image.observed[orbit::x_min].value;
+    point.peak_force = image.observed[orbit::peak_force].value;
+    point.contacts = std::move(image.contacts);
+    if (motion.mirrored) {
+        const double centre = system.integrator->centre(system.parameters);
+        const double size = std::max(point.x_max - centre, centre - point.x_min);
+        point.x_max = centre + size;
+        point.x_min = centre - size;
+    }
+    if (motion.form == orbit::Form::free && point.x_max >= system.stop_position()) {
+        point.contacts = contacts_met(system, point);
+    }
+    strobed->monodromy = image.derivative;
+    point.multipliers = orbit::multipliers(*strobed);
+    point.map_multipliers = point.multipliers;
+    if (motion.mirrored) { point.map_multipliers = strobed->monodromy.eigenvalues(); }
+    count_unstable(point);
+    const numerics::SmallVector y = orbit::to_vector(system, strobed->state);
+    const double gap = (orbit::to_vector(system, image.state) - y).norm();
+    result.status = gap <= 1e-6 * (1.0 + y.norm()) ? Look::Status::ok : Look::Status::not_closed;
+    return result;
+}
+
+flow::State state_at_zero(const flow::System& system, const Point& point) {
+    orbit::Orbit orbit;
+    orbit.state = point.state;
+    orbit.map.phase = point.phase;
+    orbit.map.period = point.motion.period;
+    orbit.map.stop = point.motion.form == orbit::Form::free ? flow::StopMode::off : flow::StopMode::hybrid;
+    return orbit::state_at_zero(system, orbit);
+}
+
+}  // namespace percuss::branch

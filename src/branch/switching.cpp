@@ -1,0 +1,83 @@
+#include "branch/switching.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace percuss::branch {
+namespace {
+
+using numerics::Matrix;
+using numerics::Vector;
+using orbit::Form;
+using orbit::Motion;
+
+Motion doubled(const Motion& motion) {
+    Motion twice = motion;
+    twice.period = 2 * motion.period;
+    twice.sequence.period = twice.period;
+    for (orbit::ContactUnknowns contact : motion.sequence.contacts) {
+        contact.phase += 2.0 * std::numbers::pi * motion.period;
+        twice.sequence.contacts.push_back(contact);
+    }
+    return twice;
+}
+
+bool alike(const Point& a, const Point& b, double size) {
+    const auto near = [](double x, double y, double unit) { return std::abs(x - y) <= 1e-6 * unit; };
+    return a.contacts.size() == b.contacts.size() && near(a.x_max, b.x_max, size) && near(a.x_min, b.x_min, size) &&
+           near(a.peak_force, b.peak_force, 1.0 + a.peak_force) &&
+           near(a.max_multiplier(), b.max_multiplier(), 1e2 * (1.0 + a.max_multiplier()));
+}
+
+}  // namespace
+
+std::optional<Departure> departure_at_flip(const flow::Family& family, const BoundaryPoint& flip, double size) {
+    const Motion& motion = flip.point.motion;
+    const flow::System system = family.at(flip.point.parameter);
+    const auto r = orbit::shoot(system, motion, {});
+    if (!r) { return std::nullopt; }
+    const Vector units = orbit::unit_of_unknowns(family.base, motion, size);
+    const Matrix a = (r->by_unknowns - 2.0 * r->by_closing) * units.asDiagonal();
+    const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullV);
+    const Vector mode = svd.matrixV().col(a.cols() - 1);
+    Departure departure;
+    departure.parameter = flip.point.parameter;
+    if (motion.mirrored) {
+        departure.motion = motion;
+        departure.motion.mirrored = false;
+        departure.off = mode;
+        return departure;
+    }
+    departure.motion = doubled(motion);
+    departure.off = mode;
+    if (motion.form == Form::sequence) {
+        departure.off.resize(2 * mode.size());
+        departure.off << mode, -mode;
+    }
+    return departure;
+}
+
+bool passes_through(const flow::Family& family, const Branch& branch, const Point& motion, double size) {
+    for (std::size_t i = 0; i + 1 < branch.points.size(); ++i) {
+        const Point& a = branch.points[i];
+        const Point& b = branch.points[i + 1];
+        const double p = motion.parameter;
+        if ((a.parameter - p) * (b.parameter - p) > 0.0 || a.motion.form != b.motion.form ||
+            a.motion.contacts() != b.motion.contacts()) {
+            continue;
+        }
+        const double way = b.parameter - a.parameter;
+        const double share = way != 0.0 ? (p - a.parameter) / way : 0.0;
+        const Vector from = orbit::pack(family.base, a.motion);
+        const Vector to = orbit::pack(family.base, b.motion);
+        const Motion guess = orbit::unpack(family.base, from + share * (to - from), a.motion);
+        const auto solved = orbit::solve(family.at(p), guess);
+        if (!solved) { continue; }
+        const Look seen = look(family, *solved, p);
+        if (seen.ok() && alike(seen.point, motion, size)) { return true; }
+    }
+    return false;
+}
+
+}  // namespace percuss::branch

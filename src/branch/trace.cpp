@@ -1,0 +1,285 @@
+#include "branch/trace.hpp"
+
+#include "branch/corner.hpp"
+#include "branch/locate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace percuss::branch {
+namespace {
+
+using boundary::Kind;
+using orbit::Form;
+using orbit::Motion;
+
+class Tracer {
+public:
+    Tracer(const flow::Family& family, const TraceOptions& options) : family_(family), options_(options) {}
+
+    Branch run(const Departure& departure) {
+        branch_.period = departure.motion.period;
+        if (depart(departure)) {
+            while (can_continue()) { step(); }
+        }
+        pair_jumps();
+        return std::move(branch_);
+    }
+
+private:
+    [[nodiscard]] bool can_continue() {
+        if (branch_.end != End::not_run) { return false; }
+        if (static_cast<int>(branch_.points.size()) >= options_.max_points || (options_.stop && options_.stop())) {
+            branch_.end = End::budget;
+            branch_.end_reason = "as many points as were allowed";
+            return false;
+        }
+        return true;
+    }
+
+    void lose(std::string reason) {
+        branch_.end = End::lost;
+        branch_.end_reason = std::move(reason);
+    }
+
+    bool depart(const Departure& d) {
+        renew_piece(d.motion);
+        const bool started = d.off.size() > 0 ? piece_->start_off(d.motion, d.parameter, d.off, departure_distance)
+                                              : piece_->start(d.motion, d.parameter, d.direction);
+        ++branch_.solves;
+        if (!started || !stand_here()) {
+            lose("Newton's method found no motion to start from");
+            return false;
+        }
+        branch_.points.push_back(last_.point);
+        return true;
+    }
+
+    /// One step along the piece and what it brings: another point, a contact that leaves or enters, or trouble.
+    void step() {
+        if (!piece_->advance()) { return change_form("the step length collapsed"); }
+        ++branch_.solves;
+        const Motion motion = piece_->motion();
+        const int leaving = contact_leaving(motion);
+        if (leaving != no_contact) { return leave(leaving); }
+        Look seen = look(family_, motion, piece_->parameter());
+        if (seen.status == Look::Status::flow_failed) { return try_shorter("the motion could not be integrated"); }
+        const std::size_t met = seen.point.contacts.size();
+        const std::size_t expected = motion.contacts();
+        if (motion.form != Form::strobed && met > expected) { return enter(seen.point); }
+        if (!seen.ok() || (motion.form != Form::strobed && met != expected)) {
+            return try_shorter("the contacts of the motion changed in a way that could not be followed");
+        }
+        accept({piece_->point(), piece_->slope(), std::move(seen.point)});
+    }
+
+    void accept(Standing here) {
+        note_boundaries(last_, here);
+        last_ = std::move(here);
+        branch_.points.push_back(last_.point);
+        const double low = std::min(options_.from, options_.to);
+        const double high = std::max(options_.from, options_.to);
+        const double p = last_.point.parameter;
+        if (p < low || p > high) {
+            end_at(p < low ? low : high);
+        } else if (closes()) {
+            branch_.end = End::closed;
+        } else if (last_.point.motion.form == Form::strobed && ++strobed_points_ >= 4) {
+            return_to_sequence();
+        }
+    }
+
+    void note_boundaries(const Standing& a, const Standing& b) {
+        for (Kind kind : boundaries_between(a, b)) {
+            record(locate(family_, *piece_, kind, a, b, options_.size, branch_.solves));
+        }
+    }
+
+    void record(BoundaryPoint found) {
+        found.after = branch_.points.empty() ? 0 : branch_.points.size() - 1;
+        branch_.boundaries.push_back(std::move(found));
+    }
+
+    /// The last point moved to the end of the range.
+    void end_at(double parameter) {
+        branch_.end = End::range;
+        if (branch_.points.size() < 2) { return; }
+        const auto there = orbit::solve(family_.at(parameter), last_.point.motion);
+        ++branch_.solves;
+        if (!there) { return; }
+        Look seen = look(family_, *there, parameter);
+        if (seen.ok()) { branch_.points.back() = std::move(seen.point); }
+    }
+
+    // ---- grazing points
+
+    void leave(int contact) {
+        const auto corner = leave_contact(family_, *piece_, last_, contact, options_);
+        branch_.solves += 2;
+        if (!corner) { return try_shorter("the grazing point where a contact ends could not be located"); }
+        if (corner->near.point.parameter != 0.0) { note_boundaries(last_, corner->near); }
+        pass(*corner);
+    }
+
+    void enter(const Point& seen) {
+        if (seen.contacts.size() > seen.motion.contacts() + 1 && piece_->step() > shortest_step && piece_->retreat()) {
+            return;
+        }
+        auto corner = enter_contact(family_, *piece_, last_, seen, options_);
+        branch_.solves += 2;
+        if (!corner) { return try_shorter("the grazing point where a contact begins could not be located"); }
+        note_boundaries(last_, corner->before);
+        pass(*corner);
+    }
+
+    /// Goes on behind a grazing point with the other form.
+    void pass(const Corner& corner) {
+        branch_.points.push_back(corner.at);
+        BoundaryPoint found;
+        found.kind = Kind::grazing;
+        found.point = corner.at;
+        found.uncertainty = corner.uncertainty;
+        found.contact = corner.contact;
+        record(std::move(found));
+        piece_ = std::make_unique<Piece>(family_, corner.onward.motion, options_.size, options_.steps);
+        const bool started =
+            corner.entering_contact >= 0
+                ? piece_->start_with_speed(corner.onward.motion, corner.onward.parameter, corner.entering_contact)
+                : piece_->start(corner.onward.motion, corner.onward.parameter, corner.onward.direction);
+        if (!started || !stand_here()) { return lose("the motion behind a grazing point could not be found"); }
+        strobed_points_ = 0;
+    }
+
+    // ---- trouble
+
+    void try_shorter(const char* reason) {
+        if (piece_->step() > shortest_step && piece_->retreat()) { return; }
+        change_form(reason);
+    }
+
+    /// A sequence that cannot be followed on may be passed stroboscopically: contacts that merge or split.
+    void change_form(const char* reason) {
+        if (last_.point.motion.form != Form::sequence) { return lose(reason); }
+        Motion motion;
+        motion.form = Form::strobed;
+        motion.period = branch_.period;
+        motion.state = last_.point.state;
+        motion.phase = last_.point.phase;
+        restart(motion, reason);
+    }
+
+    void return_to_sequence() {
+        strobed_points_ = 0;
+        orbit::Orbit orbit;
+        orbit.map.period = branch_.period;
+        orbit.map.phase = last_.point.phase;
+        orbit.state = last_.point.state;
+        orbit.contacts = last_.point.contacts;
+        const Motion motion = orbit::motion_of(family_.base, orbit);
+        if (motion.form == Form::strobed) { return; }
+        const Look seen = look(family_, motion, last_.point.parameter);
+        if (seen.ok() && seen.point.contacts.size() == motion.contacts()) {
+            restart(motion, "the motion could not be followed with its new contacts");
+        }
+    }
+
+    void restart(const Motion& motion, const char* reason) {
+        const double direction = last_.slope;
+        renew_piece(motion);
+        if (!piece_->start(motion, last_.point.parameter, direction) || !stand_here()) { return lose(reason); }
+        strobed_points_ = 0;
+    }
+
+    void renew_piece(const Motion& motion) {
+        piece_ = std::make_unique<Piece>(family_, motion, options_.size, options_.steps);
+    }
+
+    bool stand_here() {
+        Look seen = look(family_, piece_->motion(), piece_->parameter());
+        if (!seen.ok()) { return false; }
+        last_ = {piece_->point(), piece_->slope(), std::move(seen.point)};
+        return true;
+    }
+
+    // ---- shape of the whole
+
+    /// Whether the last step passed the first point again, in the same direction.
+    [[nodiscard]] bool closes() const {
+        const auto& points = branch_.points;
+        if (points.size() < 8) { return false; }
+        const Point& first = points.front();
+        const Point& a = points[points.size() - 2];
+        const Point& b = points.back();
+        const double unit = family_.units.front();
+        const double length = std::abs(b.parameter - a.parameter) / unit + std::abs(b.x_min - a.x_min) / options_.size +
+                              std::abs(b.peak_force - a.peak_force) / (1.0 + first.peak_force);
+        const double away = std::abs(b.parameter - first.parameter) / unit +
+                            std::abs(b.x_min - first.x_min) / options_.size +
+                            std::abs(b.peak_force - first.peak_force) / (1.0 + first.peak_force);
+        const double way_there = points[1].parameter - first.parameter;
+        return away <= 1.5 * length && b.contacts.size() == first.contacts.size() &&
+               (b.parameter - a.parameter) * way_there > 0.0 && a.motion.form == b.motion.form &&
+               std::abs(b.max_multiplier() - first.max_multiplier()) <
+                   3.0 * std::abs(b.max_multiplier() - a.max_multiplier()) + 1e-3;
+    }
+
+    /// A fold within 1e-6 of a grazing point is one physical jump with it.
+    void pair_jumps() {
+        auto& all = branch_.boundaries;
+        for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+            const bool kinds = (all[i].kind == Kind::grazing && all[i + 1].kind == Kind::fold) ||
+                               (all[i].kind == Kind::fold && all[i + 1].kind == Kind::grazing);
+            const double apart = std::abs(all[i].point.parameter - all[i + 1].point.parameter);
+            if (kinds && apart <= 1e-6 * std::abs(all[i].point.parameter)) {
+                all[i].partner = static_cast<int>(i + 1);
+                all[i + 1].partner = static_cast<int>(i);
+            }
+        }
+    }
+
+    static constexpr double shortest_step = 1e-4;
+    static constexpr double departure_distance = 0.02;
+
+    const flow::Family& family_;
+    const TraceOptions& options_;
+    Branch branch_;
+    std::unique_ptr<Piece> piece_;
+    Standing last_;
+    int strobed_points_ = 0;
+};
+
+}  // namespace
+
+Branch trace(const flow::Family& family, const Departure& departure, const TraceOptions& options) {
+    return Tracer(family, options).run(departure);
+}
+
+Branch trace_both_ways(const flow::Family& family, const Departure& departure, const TraceOptions& options) {
+    Departure back = departure;
+    back.direction = -departure.direction;
+    Branch joined = trace(family, back, options);
+    if (joined.end == End::closed) { return joined; }
+    Branch forth = trace(family, departure, options);
+    const std::size_t shift = joined.points.empty() ? 0 : joined.points.size() - 1;
+    std::reverse(joined.points.begin(), joined.points.end());
+    std::reverse(joined.boundaries.begin(), joined.boundaries.end());
+    const int earlier = static_cast<int>(joined.boundaries.size());
+    for (BoundaryPoint& found : joined.boundaries) {
+        found.after = found.after < shift ? shift - found.after - 1 : 0;
+        if (found.partner >= 0) { found.partner = earlier - 1 - found.partner; }
+    }
+    joined.begin = joined.end;
+    joined.begin_reason = joined.end_reason;
+    for (std::size_t i = 1; i < forth.points.size(); ++i) { joined.points.push_back(std::move(forth.points[i])); }
+    for (BoundaryPoint& found : forth.boundaries) {
+        found.after += shift;
+        if (found.partner >= 0) { found.partner += earlier; }
+        joined.boundaries.push_back(std::move(found));
+    }
+    joined.end = forth.end;
+    joined.end_reason = forth.end_reason;
+    joined.solves += forth.solves;
+    return joined;
+}
+
+}  // namespace percuss::branch

@@ -1,0 +1,58 @@
+#include "cli/verbs.hpp"
+
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/session.hpp"
+#include "cli/stopping.hpp"
+#include "io/simulate_results.hpp"
+#include "io/sweep_results.hpp"
+
+#include <memory>
+
+namespace percuss::cli {
+
+int simulate(const Arguments& arguments) {
+    Session session(arguments);
+    study::SimulateStudy study = session.problem().simulate;
+    study.orbit_start = session.problem().orbit.start;
+    study.orbit_period = session.problem().orbit.period;
+    session.start({"result.json", "report.html", "series.csv", "contacts.csv"});
+    study::SimulateStudyResult result;
+    {
+        const auto series = session.table("series.csv");
+        const auto contacts = session.table("contacts.csv");
+        Progress progress(arguments.quiet);
+        result = study::run_simulate(session.problem().study, study, series.get(), contacts.get(), progress.observer(),
+                                     stop_request(arguments.time_limit));
+    }
+    result.ending = told_apart(result.ending);
+
+    const std::string document = io::simulate_document(session.problem(), result);
+    const auto presentation = io::present_simulation(session.problem(), result);
+    session.write_results(document, presentation);
+    session.finish(result.ending);
+    print(arguments.json ? document : io::plain_text(presentation));
+    return exit_code(result.ending);
+}
+
+int sweep(const Arguments& arguments) {
+    Session session(arguments, io::FrequencyUse::ranges);
+    session.start({"result.json", "report.html", "sweep.csv"});
+    study::SweepStudyResult result;
+    {
+        const auto rows = session.table("sweep.csv");
+        Progress progress(arguments.quiet);
+        result = study::run_sweep(session.problem().study, session.problem().sweep, rows.get(), progress.observer(),
+                                  stop_request(arguments.time_limit));
+    }
+    result.ending = told_apart(result.ending);
+
+    const std::string document = io::sweep_document(session.problem(), result);
+    const auto presentation = io::present_sweep(session.problem(), result);
+    session.write_results(document, presentation);
+    session.finish(result.ending);
+    print(arguments.json ? document : io::plain_text(presentation));
+    return exit_code(result.ending);
+}
+
+}  // namespace percuss::cli
