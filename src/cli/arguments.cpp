@@ -24,7 +24,7 @@ constexpr std::array verb_table = {
     VerbInfo{"orbit", "the periodic orbit at one frequency: state, multipliers, quantities", true},
     VerbInfo{"branch", "continuation in the drive frequency or a design variable", false},
     VerbInfo{"locus", "follow a boundary in two parameters", false},
-    VerbInfo{"attractors", "every stable motion found at one operating point", false},
+    VerbInfo{"attractors", "every stable motion found at one operating point", true},
     VerbInfo{"evaluate", "one design: operating point, quantities, uniqueness", true},
     VerbInfo{"explore", "a table over the design space", false},
     VerbInfo{"optimise", "the best design, certified", true},
@@ -50,6 +50,7 @@ constexpr std::array option_table = {
     OptionInfo{"from", "F", "short for --sweep.from", "sweep"},
     OptionInfo{"to", "F", "short for --sweep.to", "sweep"},
     OptionInfo{"steps", "N", "short for --sweep.steps", "sweep"},
+    OptionInfo{"starts", "N", "short for --attractors.starts", "attractors"},
     OptionInfo{"chirp", "", "short for --sweep.mode chirp", "sweep"},
 };
 
@@ -124,6 +125,8 @@ void apply(const Setting& option, Arguments& arguments) {
         arguments.keys.push_back({"simulate." + option.key, option.value, true});
     } else if (option.key == "from" || option.key == "to" || option.key == "steps") {
         arguments.keys.push_back({"sweep." + option.key, option.value, true});
+    } else if (option.key == "starts") {
+        arguments.keys.push_back({"attractors.starts", option.value, true});
     } else if (option.key == "chirp") {
         arguments.keys.push_back({"sweep.mode", "chirp", true});
     }

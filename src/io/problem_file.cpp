@@ -58,6 +58,7 @@ ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting>
     read_orbit(settings, design.actuator.family, problem.orbit, troubles);
     read_simulate(settings, design.actuator.family, problem.simulate, troubles);
     read_sweep(settings, design.actuator.family, problem.sweep, troubles);
+    read_attractors(settings, design.actuator.family, problem.attractors, troubles);
     model::apply_defaults(design.actuator);
     fill_in_variables(design);
     check_values(design, use, troubles);

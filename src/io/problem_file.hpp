@@ -4,6 +4,7 @@
 
 #include "io/settings.hpp"
 #include "model/specification.hpp"
+#include "study/attractors.hpp"
 #include "study/orbit.hpp"
 #include "study/simulate.hpp"
 #include "study/study.hpp"
@@ -36,6 +37,7 @@ struct ProblemFile {
     study::OrbitStudy orbit;
     study::SimulateStudy simulate;
     study::SweepStudy sweep;
+    study::AttractorsStudy attractors;
     std::vector<ResolvedSetting> settings;  ///< every key in force, section by section
     std::vector<std::string> troubles;      ///< all that is wrong; always empty from read_problem
 };

@@ -86,6 +86,7 @@ public:
         number("orbit.period", problem_.orbit.period, "");
         simulate_keys(problem_.simulate, design.actuator.family);
         sweep_keys(problem_.sweep, design.actuator.family);
+        attractors_keys(problem_.attractors);
         return std::move(resolved_);
     }
 
@@ -139,6 +140,13 @@ private:
         number("sweep.max_cycles", study.max_cycles, "");
         number("sweep.longest_period", study.longest_period, "");
         number("sweep.chirp_cycles", study.chirp_cycles, "");
+    }
+
+    void attractors_keys(const study::AttractorsStudy& study) {
+        number("attractors.starts", study.starts, "");
+        number("attractors.cycles", study.cycles, "");
+        if (study.lower) { text("attractors.lower", state_text(*study.lower)); }
+        if (study.upper) { text("attractors.upper", state_text(*study.upper)); }
     }
 
     void number(const std::string& name, double value, std::string_view unit) {
