@@ -13,6 +13,7 @@ using std::numbers::pi;
 /// Newton's method is tried at these cycles and then each half as many cycles later.
 constexpr int first_look = 16;
 constexpr int evenly_until = 64;
+constexpr int more_for_creeping = 4;
 /// Recurrences farther than this, in units of the box, are not worth a try.
 constexpr double near_recurrence = 1e-2;
 /// After a failure a start must recur this much closer before it is tried again.
@@ -49,9 +50,10 @@ public:
     BlockResult run() {
         int look = first_look;
         int cycle = 0;
-        while (!live_.empty() && cycle < options_.max_cycles) {
+        while (!live_.empty() && cycle < more_for_creeping * options_.max_cycles) {
             advance();
             ++cycle;
+            if (cycle >= options_.max_cycles && (cycle - options_.max_cycles) % options_.memory == 0) { retire(); }
             if (cycle < look) { continue; }
             if (options_.stop_requested && options_.stop_requested()) {
                 result_.stopped = true;
@@ -150,14 +152,36 @@ private:
         return true;
     }
 
-    BlockResult finish() {
-        for (const std::size_t i : live_) {
-            result_.followers[i].fate = Fate::unsettled;
-            auto& history = tracks_[i].history;
-            const std::size_t excess = history.size() - std::min(history.size(), index(options_.memory));
-            history.erase(history.begin(), history.begin() + static_cast<std::ptrdiff_t>(excess));
-            result_.followers[i].history = std::move(history);
+    /// The budget is over for starts that do not creep towards a known orbit.
+    void retire() {
+        std::size_t kept = 0;
+        for (std::size_t slot = 0; slot < live_.size(); ++slot) {
+            const std::size_t i = live_[slot];
+            if (!is_creeping(known_, recent(i), scout_.states(), scale_)) {
+                leave_unsettled(i);
+                continue;
+            }
+            live_[kept] = i;
+            states_[kept] = states_[slot];
+            ++kept;
         }
+        live_.resize(kept);
+        states_.resize(kept);
+    }
+
+    [[nodiscard]] std::span<const flow::State> recent(std::size_t i) const {
+        const auto& history = tracks_[i].history;
+        return std::span(history).last(std::min(history.size(), index(options_.memory)));
+    }
+
+    void leave_unsettled(std::size_t i) {
+        const auto history = recent(i);
+        result_.followers[i].fate = Fate::unsettled;
+        result_.followers[i].history.assign(history.begin(), history.end());
+    }
+
+    BlockResult finish() {
+        for (const std::size_t i : live_) { leave_unsettled(i); }
         result_.found.assign(known_.begin() + static_cast<std::ptrdiff_t>(known_before_), known_.end());
         result_.cycles = cost_.periods();
         return std::move(result_);

@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t looked_at = 128;
 constexpr double same_median = 2.0;
 constexpr double same_ninety = 3.0;
+/// In units of the scale: a motion on a curve fills it so densely that one still settling on it would seem apart.
+constexpr double resolution = 1e-3;
 
 double squared_distance(const flow::State& a, const flow::State& b, const flow::State& scale, std::size_t states) {
     double sum = 0.0;
@@ -51,7 +53,8 @@ Cloud::Quantiles Cloud::distances(const std::vector<flow::State>& others, bool o
 bool Cloud::holds(const std::vector<flow::State>& others) const {
     if (points_.empty() || others.empty()) { return false; }
     const Quantiles theirs = distances(others, false);
-    return theirs.median <= same_median * own_.median && theirs.ninety <= same_ninety * own_.ninety;
+    return theirs.median <= same_median * std::max(own_.median, resolution) &&
+           theirs.ninety <= same_ninety * std::max(own_.ninety, resolution);
 }
 
 }  // namespace percuss::attractor

@@ -10,7 +10,8 @@ namespace percuss::attractor {
 
 /// Other strobed states are taken to be of the same set when their distances to the nearest point of the cloud are
 /// distributed as those between points of the cloud: the median at most twice, the 90 % quantile at most three times as
-/// large. (A stable motion apart from the set keeps a distance from all of it.)
+/// large, distances below 1e-3 of the scale counting as that. (A stable motion apart from the set keeps a distance from
+/// all of it.)
 class Cloud {
 public:
     Cloud() = default;

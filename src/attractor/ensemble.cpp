@@ -76,6 +76,11 @@ public:
     [[nodiscard]] static long first(long block) { return block * block_size; }
 
     BlockResult follow(long block, const KnownOrbits& known) {
+        if (options_.stop_requested && options_.stop_requested()) {
+            BlockResult none;
+            none.stopped = true;
+            return none;
+        }
         Starts starts;
         for (long i = first(block); i < first(block) + size(block); ++i) {
             starts.push_back(start_state(box_, systems_.exact.states(), options_.seed, i));

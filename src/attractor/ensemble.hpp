@@ -20,7 +20,7 @@ struct EnsembleOptions {
     long starts = 512;
     std::uint64_t seed = 1;
     int jobs = 1;           ///< threads
-    int max_cycles = 1000;  ///< budget of each start
+    int max_cycles = 1000;  ///< budget of each start, four times this for one that creeps towards a known orbit
     int longest_period = 12;
     LeftoverOptions leftovers{};
     std::function<bool()> stop_requested{};     ///< may be asked from any thread

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace percuss::attractor {
 namespace {
@@ -85,6 +86,27 @@ Recurrence recurrence(std::span<const flow::State> history, int states, const fl
         std::find_if(distances.begin(), distances.end(), [&](double d) { return d <= nearly_as_close * nearest; });
     if (first == distances.end()) { return {}; }  // NaN
     return {shortest + static_cast<int>(first - distances.begin()), *first};
+}
+
+bool is_creeping(const KnownOrbits& known, std::span<const flow::State> history, int states, const flow::State& scale) {
+    constexpr int longest = 12;
+    constexpr double slow = 1e-3;
+    constexpr std::size_t windows = 4;
+    const Recurrence r = recurrence(history, states, scale, 1, longest);
+    if (r.period == 0 || !(r.distance < slow) || is_news(known, r, history.back())) { return false; }
+    const std::size_t length = history.size() / windows;
+    return std::any_of(known.begin(), known.end(), [&](const auto& orbit) {
+        double before = std::numeric_limits<double>::infinity();
+        for (std::size_t window = 0; window < windows; ++window) {
+            double furthest = 0.0;
+            for (std::size_t i = window * length; i < (window + 1) * length; ++i) {
+                furthest = std::max(furthest, orbit->trap.distance(history[i]));
+            }
+            if (!(furthest < before)) { return false; }
+            before = furthest;
+        }
+        return true;
+    });
 }
 
 }  // namespace percuss::attractor

@@ -54,4 +54,8 @@ bool is_news(const KnownOrbits& known, const Recurrence& recurrence, const flow:
 Recurrence recurrence(std::span<const flow::State> history, int states, const flow::State& scale, int shortest,
                       int longest);
 
+/// Whether a motion is on its way to a known orbit, ever closer, but too slow to have been captured yet: it nearly
+/// recurs as such a motion does, and each quarter of its history stays nearer to the orbit than the one before.
+bool is_creeping(const KnownOrbits& known, std::span<const flow::State> history, int states, const flow::State& scale);
+
 }  // namespace percuss::attractor

@@ -20,6 +20,7 @@ LeftoverJudge::Verdict LeftoverJudge::judge(const std::vector<flow::State>& hist
     if (const auto orbit = settling_on(history)) { return {*orbit, -1}; }
     if (const auto orbit = long_period(history)) { return {*orbit, -1}; }
     if (history.size() < shortest_history) { return {}; }
+    if (is_creeping(known_, history, systems_.exact.states(), scale_)) { return {}; }
     if (const auto verdict = on_a_path(history)) { return *verdict; }
     return follow_on(history);
 }
@@ -64,21 +65,17 @@ LeftoverJudge::Verdict LeftoverJudge::follow_on(const std::vector<flow::State>& 
     };
     const Wander seen = wander(systems_.exact, history.back(), options_.exponent, leave);
     if (captured) { return {*captured, -1}; }  // where others like it go is not known: transients may be chaotic
-    return recognise(seen, history);
+    return recognise(seen);
 }
 
-LeftoverJudge::Verdict LeftoverJudge::recognise(const Wander& seen, const std::vector<flow::State>& history) {
+LeftoverJudge::Verdict LeftoverJudge::recognise(const Wander& seen) {
     if (seen.status != WanderStatus::ok) { return {}; }
     if (const auto verdict = on_a_path(seen.strobes)) { return *verdict; }
-    const int states = systems_.exact.states();
     const auto motion = measure(seen);
-    if (!motion) {  // still settling: others like it are met where it was before
-        paths_.push_back({Cloud(history, scale_, states), {}});
-        return {};
-    }
+    if (!motion) { return {}; }
     const Verdict verdict{-1, static_cast<int>(aperiodic_.size())};
     aperiodic_.push_back(*motion);
-    paths_.push_back({Cloud(seen.strobes, scale_, states), verdict});
+    paths_.push_back({Cloud(seen.strobes, scale_, systems_.exact.states()), verdict});
     return verdict;
 }
 

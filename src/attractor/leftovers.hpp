@@ -30,9 +30,10 @@ public:
         int orbit = -1;      ///< a known periodic orbit,
         int aperiodic = -1;  ///< or an aperiodic motion, or neither: unclassified
     };
-    /// First a known orbit that the motion is settling on, or a new one of long period; then a motion followed before
-    /// on whose strobed states it lies; then a run of its own, in which it may still be captured after all, and whose
-    /// exponent decides. A run that lies on the strobed states of an aperiodic motion met before is that motion.
+    /// First a known orbit that the motion is settling on, or a new one of long period; a motion that only creeps
+    /// towards a known orbit stays unclassified; then a motion followed before on whose strobed states it lies; then a
+    /// run of its own, in which it may still be captured after all, and whose exponent decides. A run that lies on the
+    /// strobed states of an aperiodic motion met before is that motion.
     Verdict judge(const std::vector<flow::State>& history);
 
     [[nodiscard]] const std::vector<Motion>& aperiodic() const { return aperiodic_; }
@@ -47,7 +48,7 @@ private:
     [[nodiscard]] std::optional<int> long_period(const std::vector<flow::State>& history);
     [[nodiscard]] std::optional<Verdict> on_a_path(const std::vector<flow::State>& strobes) const;
     Verdict follow_on(const std::vector<flow::State>& history);
-    Verdict recognise(const Wander& seen, const std::vector<flow::State>& history);
+    Verdict recognise(const Wander& seen);
 
     const Systems& systems_;
     flow::State scale_;

@@ -26,7 +26,7 @@ constexpr std::array verb_table = {
     VerbInfo{"branch", "continuation in the drive frequency or a design variable: hysteresis map, all boundaries",
              true},
     VerbInfo{"locus", "follow a boundary in two parameters", true},
-    VerbInfo{"attractors", "every stable motion found at one operating point", false},
+    VerbInfo{"attractors", "every stable motion found at one operating point", true},
     VerbInfo{"evaluate", "one design: operating point, quantities, uniqueness", true},
     VerbInfo{"explore", "a table over the design space", false},
     VerbInfo{"optimise", "the best design, certified", true},
@@ -54,7 +54,7 @@ constexpr std::array option_table = {
     OptionInfo{"steps", "N", "short for --VERB.steps", "sweep locus"},
     OptionInfo{"along", "KEY", "short for --VERB.along", "branch locus"},
     OptionInfo{"boundary", "KIND", "short for --locus.boundary", "locus"},
-    OptionInfo{"starts", "N", "short for --VERB.starts", "branch"},
+    OptionInfo{"starts", "N", "short for --VERB.starts", "branch attractors"},
     OptionInfo{"chirp", "", "short for --sweep.mode chirp", "sweep"},
 };
 

@@ -35,6 +35,7 @@ int run_verb(const Arguments& arguments) {
     if (arguments.verb == "check") { return check(arguments); }
     if (arguments.verb == "simulate") { return simulate(arguments); }
     if (arguments.verb == "sweep") { return sweep(arguments); }
+    if (arguments.verb == "attractors") { return attractors(arguments); }
     if (arguments.verb == "orbit") { return orbit(arguments); }
     if (arguments.verb == "evaluate") { return evaluate(arguments); }
     if (arguments.verb == "branch") { return branch(arguments); }

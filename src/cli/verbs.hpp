@@ -10,6 +10,7 @@ namespace percuss::cli {
 int check(const Arguments& arguments);
 int simulate(const Arguments& arguments);
 int sweep(const Arguments& arguments);
+int attractors(const Arguments& arguments);
 int orbit(const Arguments& arguments);
 int evaluate(const Arguments& arguments);
 int optimise(const Arguments& arguments);

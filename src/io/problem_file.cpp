@@ -60,6 +60,7 @@ ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting>
     read_sweep(settings, design.actuator.family, problem.sweep, troubles);
     read_branch(settings, design.actuator, problem.branch, troubles);
     read_locus(settings, design.actuator, problem.locus, troubles);
+    read_attractors(settings, design.actuator.family, problem.attractors, troubles);
     model::apply_defaults(design.actuator);
     fill_in_variables(design);
     check_values(design, use, troubles);

@@ -4,6 +4,7 @@
 
 #include "io/settings.hpp"
 #include "model/specification.hpp"
+#include "study/attractors.hpp"
 #include "study/branch.hpp"
 #include "study/locus.hpp"
 #include "study/orbit.hpp"
@@ -40,6 +41,7 @@ struct ProblemFile {
     study::SweepStudy sweep;
     study::BranchStudy branch;
     study::LocusStudy locus;
+    study::AttractorsStudy attractors;
     std::vector<ResolvedSetting> settings;  ///< every key in force, section by section
     std::vector<std::string> troubles;      ///< all that is wrong; always empty from read_problem
 };

@@ -4,6 +4,7 @@
 
 #include "design/problem.hpp"
 #include "io/setting_list.hpp"
+#include "study/attractors.hpp"
 #include "study/branch.hpp"
 #include "study/locus.hpp"
 #include "study/orbit.hpp"
@@ -34,6 +35,10 @@ void read_orbit(const SettingList& settings, model::Family family, study::OrbitS
 /// [simulate] and [sweep].
 void read_simulate(const SettingList& settings, model::Family family, study::SimulateStudy& study, Troubles& troubles);
 void read_sweep(const SettingList& settings, model::Family family, study::SweepStudy& study, Troubles& troubles);
+
+/// [attractors]
+void read_attractors(const SettingList& settings, model::Family family, study::AttractorsStudy& study,
+                     Troubles& troubles);
 
 /// A kick as it is written in problem files; its numbers read back exactly.
 std::string kick_text(const study::Kick& kick, model::Family family);

@@ -89,6 +89,7 @@ public:
         simulate_keys(problem_.simulate, design.actuator.family);
         sweep_keys(problem_.sweep, design.actuator.family);
         branch_keys();
+        attractors_keys(problem_.attractors);
         return std::move(resolved_);
     }
 
@@ -162,6 +163,13 @@ private:
         }
         number("locus.steps", locus.steps, "");
         number("locus.max_points", locus.max_points, "");
+    }
+
+    void attractors_keys(const study::AttractorsStudy& study) {
+        number("attractors.starts", study.starts, "");
+        number("attractors.cycles", study.cycles, "");
+        if (study.lower) { text("attractors.lower", state_text(*study.lower)); }
+        if (study.upper) { text("attractors.upper", state_text(*study.upper)); }
     }
 
     void number(const std::string& name, double value, std::string_view unit) {

@@ -3,6 +3,7 @@
 #include "design/problem.hpp"
 #include "model/number_text.hpp"
 #include "optimise/solve.hpp"
+#include "study/attractors.hpp"
 #include "study/branch.hpp"
 #include "study/locus.hpp"
 #include "study/orbit.hpp"
@@ -94,6 +95,17 @@ void add_branch_keys(std::vector<SettingInfo>& table) {
                      "most points of a curve"});
 }
 
+void add_attractors_keys(std::vector<SettingInfo>& table) {
+    const study::AttractorsStudy study;
+    const std::string corner = "numbers separated by commas or blanks; both corners or none";
+    table.push_back({"attractors.starts", "", "whole number, at least 1", std::to_string(study.starts),
+                     "starts drawn from the box"});
+    table.push_back({"attractors.cycles", "", "whole number, at least 1", std::to_string(study.cycles),
+                     "drive cycles each start is followed at most (four times that when it creeps towards an orbit)"});
+    table.push_back({"attractors.lower", "", corner, "from gap and stroke", "corner of the box: lowest states"});
+    table.push_back({"attractors.upper", "", corner, "from gap and stroke", "corner of the box: highest states"});
+}
+
 std::vector<SettingInfo> make_table() {
     const design::Problem problem;
     const study::OptimiserOptions optimiser;
@@ -146,6 +158,7 @@ std::vector<SettingInfo> make_table() {
     add_simulate_keys(table);
     add_sweep_keys(table);
     add_branch_keys(table);
+    add_attractors_keys(table);
     return table;
 }
 

@@ -1,0 +1,31 @@
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/session.hpp"
+#include "cli/stopping.hpp"
+#include "cli/verbs.hpp"
+#include "io/attractors_results.hpp"
+
+namespace percuss::cli {
+
+int attractors(const Arguments& arguments) {
+    Session session(arguments);
+    study::AttractorsStudyResult result;
+    {
+        Progress progress(arguments.quiet);
+        result = study::run_attractors(session.problem().study, session.problem().attractors, progress.observer(),
+                                       stop_request(arguments.time_limit));
+    }
+    result.ending = told_apart(result.ending);
+
+    const io::ProblemFile& problem = session.problem();
+    const std::string document = io::attractors_document(problem, result);
+    const auto presentation = io::present_attractors(problem, result);
+    session.start({"result.json", "report.html", "attractors.csv"});
+    session.write("attractors.csv", io::attractors_csv(problem, result));
+    session.write_results(document, presentation);
+    session.finish(result.ending);
+    print(arguments.json ? document : io::plain_text(presentation));
+    return exit_code(result.ending);
+}
+
+}  // namespace percuss::cli
