@@ -159,10 +159,9 @@ private:
         return ~(bound < 0.0);
     }
     [[nodiscard]] PERCUSS_INLINE V event_coefficients(bool force, int j) const {
-        const auto n = static_cast<std::size_t>(j);
-        const V& x = jets_.x()[n];
+        const V& x = jets_.x(j);
         const V e = j == 0 ? x - jets_.stop_position() : x;
-        return force ? jets_.stop_stiffness() * e + jets_.stop_damping() * jets_.v()[n] : e;
+        return force ? jets_.stop_stiffness() * e + jets_.stop_damping() * jets_.v(j) : e;
     }
 
     void locate(std::size_t i) {
@@ -205,10 +204,9 @@ private:
         if (numerics::first_sign_change(c, degree, sign, t)) { accept(i, event, t * h); }
     }
     [[nodiscard]] double event_coefficient(std::size_t i, bool force, int j) const {
-        const auto n = static_cast<std::size_t>(j);
-        const double x = jets_.x()[n][i];
+        const double x = jets_.x(j)[i];
         const double e = j == 0 ? x - jets_.stop_position() : x;
-        return force ? jets_.stop_stiffness() * e + jets_.stop_damping() * jets_.v()[n][i] : e;
+        return force ? jets_.stop_stiffness() * e + jets_.stop_damping() * jets_.v(j)[i] : e;
     }
 
     void accept(std::size_t i, Event event, double t) {

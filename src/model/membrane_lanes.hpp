@@ -3,15 +3,23 @@
 /// Taylor coefficients of several motions of one dielectric elastomer actuator at once, one per SIMD lane: the series
 /// of model/membrane_jet.hpp without derivatives. Lanes differ in state, phase and contact, not in parameters.
 ///
-/// Two coefficients are prepared in one sweep over the known ones, which halves the loads from memory: the sweep for
+/// With R = sqrt(s), which makes w = R'/R half the log-derivative of s = 1 + u^2,
+///
+///     C = k1 P - k2 Q,  C' = alpha_A G w      G = k1 P + k2 Q,  G' = alpha_A C w
+///     L' = L z,  M' = -M z                    z = alpha_B (w - r)
+///     f = u { [C + k3 (L - M) + delta_A omega R']/s - phi^2 } = u b
+///
+/// Two coefficients are prepared in one sweep over the known ones, which saves loads from memory: the sweep for
 /// coefficients n and n + 1 takes the products whose factors are known before coefficient n is. What both membranes
-/// have in common (u_I and u_II differ by the rod length) is convolved once.
+/// have in common (u_I and u_II differ by the rod length) is convolved once. All series lie side by side, coefficient
+/// by coefficient, so that they share the first-level cache evenly.
 
 #include "model/membrane_jet.hpp"
 #include "model/parameters.hpp"
 #include "numerics/lane_math.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace percuss::model {
@@ -25,64 +33,79 @@ public:
     static constexpr int states = Viscous ? 4 : 2;
     static constexpr int max_order = MaxOrder;
     using V = numerics::LaneVector<N>;
-    using Series = std::array<V, MaxOrder + 1>;
 
     explicit MembraneLanes(const double* p)
         : single_(p),
           length_(p[membrane::length]),
-          inverse_omega_(1.0 / p[membrane::omega]),
           half_alpha_a_(0.5 * p[membrane::alpha_a]),
           alpha_b_(p[membrane::alpha_b]),
-          layers_(p[membrane::layers]) {
+          layers_(p[membrane::layers]),
+          damping_rate_(p[membrane::delta_a] * p[membrane::omega]) {
         using std::exp;
         using std::log;
         const double alpha = p[membrane::alpha_a];
         const double log_prestretch = log(p[membrane::lambda_p]);
+        const double inverse_omega = 1.0 / p[membrane::omega];
         k1_ = exp((alpha - 2.0) * log_prestretch);
         k2_ = exp((-2.0 * alpha - 2.0) * log_prestretch);
         k3_ = p[membrane::mu_ratio] * exp(-2.0 * log_prestretch);
-        damping_rate_ = p[membrane::delta_a] * p[membrane::omega];
-        relaxation_ = inverse_omega_ / p[membrane::delta_b];
-        phi_mean_ = 0.25 * p[membrane::voltage] * p[membrane::voltage];
+        relaxation_ = alpha_b_ * inverse_omega / p[membrane::delta_b];
+        // phi^2 = phi_pp^2/4 (3/2 -+ 2 cos theta + cos(2 theta)/2); derivatives of cos cycle: cos, -sin, -cos, sin
+        const double mean = 0.25 * p[membrane::voltage] * p[membrane::voltage];
+        double scale = mean;
+        double scale2 = 0.5 * mean;
+        mean_square_ = 1.5 * mean;
+        for (int n = 0; n < MaxOrder; ++n) {
+            const double sign = (n % 4 == 1 || n % 4 == 2) ? -1.0 : 1.0;
+            Factors& f = factors_[static_cast<std::size_t>(n)];
+            f.reciprocal = 1.0 / (n + 1);
+            f.alpha = 2.0 * half_alpha_a_ * f.reciprocal;
+            f.next = n + 1;
+            f.rate = inverse_omega * f.reciprocal;
+            f.cos1 = 2.0 * sign * scale;
+            f.cos2 = sign * scale2;
+            scale *= f.reciprocal;
+            scale2 *= 2.0 * f.reciprocal;
+        }
     }
 
     [[nodiscard]] double stop_position() const { return single_.stop_position(); }
     [[nodiscard]] double stop_stiffness() const { return single_.stop_stiffness(); }
     [[nodiscard]] double stop_damping() const { return single_.stop_damping(); }
-    [[nodiscard]] const Series& x() const { return x_; }
-    [[nodiscard]] const Series& v() const { return v_; }
+    /// Coefficients of displacement and velocity.
+    [[nodiscard]] const V& x(int n) const { return c_[n].x; }
+    [[nodiscard]] const V& v(int n) const { return c_[n].v; }
 
     /// Takes (x, x', xi_I, xi_II) into a lane.
     void load(std::size_t lane, const std::array<double, states>& y) {
         single_.load(y);
-        x_[0].set(lane, y[0]);
-        v_[0].set(lane, y[1]);
+        c_[0].x.set(lane, y[0]);
+        c_[0].v.set(lane, y[1]);
         if constexpr (Viscous) {
-            sides_[0].l[0].set(lane, single_.stretch()[0]);
-            sides_[1].l[0].set(lane, single_.stretch()[1]);
+            for (std::size_t k = 0; k < 2; ++k) { c_[0].side[k].l.set(lane, single_.stretch()[k]); }
         }
     }
     /// Gives back (x, x', xi_I, xi_II) of a lane at the expansion point.
     [[nodiscard]] std::array<double, states> unload(std::size_t lane) {
-        if constexpr (Viscous) { single_.stretch() = {sides_[0].l[0][lane], sides_[1].l[0][lane]}; }
-        single_.set_position(x_[0][lane]);
-        single_.velocity() = v_[0][lane];
+        if constexpr (Viscous) { single_.stretch() = {c_[0].side[0].l[lane], c_[0].side[1].l[lane]}; }
+        single_.set_position(c_[0].x[lane]);
+        single_.velocity() = c_[0].v[lane];
         return single_.unload();
     }
-    void set_position(std::size_t lane, double x) { x_[0].set(lane, x); }
+    void set_position(std::size_t lane, double x) { c_[0].x.set(lane, x); }
     /// A lane that nobody uses is at rest.
     void clear(std::size_t lane) {
-        x_[0].set(lane, 0.0);
-        v_[0].set(lane, 0.0);
-        for (Side& side : sides_) { side.l[0].set(lane, 1.0); }
+        c_[0].x.set(lane, 0.0);
+        c_[0].v.set(lane, 0.0);
+        for (Side& side : c_[0].side) { side.l.set(lane, 1.0); }
     }
 
     /// Coefficients of x and v up to `order`. theta is the phase at the expansion point; stiffness and damping are
     /// those of the stop, zero in lanes that do not touch it.
     void expand(const V& theta, const V& stiffness, const V& damping, int order) {
         start(theta, stiffness, damping);
-        Sums now{};
-        Sums next{};
+        Sums now;
+        Sums next;
         for (int n = 0; n < order; n += 2) {
             sweep(n, now, next);
             extend(n, now);
@@ -94,50 +117,56 @@ public:
 
     /// Moves the expansion point of each lane by its h.
     void advance(const V& h, int order) {
-        V x = x_[at(order)];
-        V v = v_[at(order)];
-        V l0 = sides_[0].l[at(order)];
-        V l1 = sides_[1].l[at(order)];
+        V x = c_[order].x;
+        V v = c_[order].v;
+        V l0 = c_[order].side[0].l;
+        V l1 = c_[order].side[1].l;
         for (int j = order - 1; j >= 0; --j) {
-            x = x * h + x_[at(j)];
-            v = v * h + v_[at(j)];
+            x = x * h + c_[j].x;
+            v = v * h + c_[j].v;
             if constexpr (Viscous) {
-                l0 = l0 * h + sides_[0].l[at(j)];
-                l1 = l1 * h + sides_[1].l[at(j)];
+                l0 = l0 * h + c_[j].side[0].l;
+                l1 = l1 * h + c_[j].side[1].l;
             }
         }
-        x_[0] = x;
-        v_[0] = v;
+        c_[0].x = x;
+        c_[0].v = v;
         if constexpr (Viscous) {
-            sides_[0].l[0] = l0;
-            sides_[1].l[0] = l1;
+            c_[0].side[0].l = l0;
+            c_[0].side[1].l = l1;
         }
     }
 
     /// Largest modulus of the j-th coefficients over the state, for the step size.
     [[nodiscard]] V norm(int j) const {
-        V m = max(abs(x_[at(j)]), abs(v_[at(j)]));
-        if constexpr (Viscous) { m = max(m, max(abs(sides_[0].l[at(j)]), abs(sides_[1].l[at(j)]))); }
+        V m = max(abs(c_[j].x), abs(c_[j].v));
+        if constexpr (Viscous) { m = max(m, max(abs(c_[j].side[0].l), abs(c_[j].side[1].l))); }
         return m;
     }
 
 private:
     using Part = typename V::Part;
 
-    /// The series of one membrane, named as in model/membrane_jet.hpp.
+    /// The j-th coefficients of all series.
     struct Side {
-        Series s, w, p, q, root, e, l, m, z;
+        V s, root, w, c, g, e, l, m, z;
     };
-    /// Sums of products of known coefficients, for one coefficient each.
+    struct Coefficients {
+        V x, v, b;  ///< b: of both membranes together
+        Side side[2];
+    };
+    /// Sums of products of known coefficients.
     struct SideSums {
-        V sw, pw, qw, rw, se, lz, mz;
+        V rr, rw, cw, gw, se, lz, mz;
     };
     struct Sums {
         SideSums side[2];
         V xx, xb;
     };
-
-    static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+    /// What coefficient n + 1 is made with.
+    struct Factors {
+        double reciprocal, next, alpha, rate, cos1, cos2;
+    };
 
     void start(const V& theta, const V& stiffness, const V& damping) {
         stiffness_ = stiffness;
@@ -145,196 +174,224 @@ private:
         cos_sin(theta, cos1_, sin1_);
         cos2_ = 2.0 * cos1_ * cos1_ - 1.0;
         sin2_ = 2.0 * sin1_ * cos1_;
-        inverse_factorial_ = 1.0;
-        power_of_two_ = 1.0;
         for (int k = 0; k < 2; ++k) {
-            Side& side = sides_[k];
-            u_[k] = k == 0 ? x_[0] : x_[0] - length_;
-            side.s[0] = u_[k] * u_[k] + 1.0;
-            inverse_s_[k] = 1.0 / side.s[0];
-            const V log_s = log(side.s[0]);
-            side.p[0] = exp(half_alpha_a_ * log_s);
-            side.q[0] = 1.0 / side.p[0];
-            side.root[0] = exp(-0.5 * log_s);
-            if constexpr (Viscous) { side.m[0] = 1.0 / side.l[0]; }
+            Side& side = c_[0].side[k];
+            u_[k] = k == 0 ? c_[0].x : c_[0].x - length_;
+            twice_u_[k] = 2.0 * u_[k];
+            side.s = u_[k] * u_[k] + 1.0;
+            const V log_s = log(side.s);
+            const V p = exp(half_alpha_a_ * log_s);
+            const V q = k2_ / p;
+            side.c = k1_ * p - q;
+            side.g = k1_ * p + q;
+            side.root = exp(0.5 * log_s);
+            inverse_root_[k] = 1.0 / side.root;
+            half_inverse_root_[k] = 0.5 * inverse_root_[k];
+            inverse_s_[k] = 1.0 / side.s;
+            if constexpr (Viscous) { side.m = 1.0 / side.l; }
         }
     }
 
-    /// now: sums over j = 1..n of a_j b_(n-j), and of x_j x_(n+1-j); next: those terms of the sums for n + 1 that hold
-    /// nothing later than coefficients n of a and n - 1 of b.
+    /// now: sums over j = 1..n of a_j b_(n-j), and of a_j a_(n+1-j) for squares. next: those terms of the sums for n +
+    /// 1 that hold nothing later than coefficient n of a and n - 1 of b. n is even. The terms that became known last
+    /// are added last, so that the processor need not wait for them.
     void sweep(int n, Sums& now, Sums& next) const {
         for (int i = 0; i < V::parts; ++i) {
             for (int k = 0; k < 2; ++k) {
-                const Side& side = sides_[k];
-                sweep_log_derivative(side, n, i, now.side[k], next.side[k]);
-                sweep_branch(side, n, i, now.side[k], next.side[k]);
+                sweep_elastic(n, k, i, now.side[k], next.side[k]);
+                sweep_viscous(n, k, i, now.side[k], next.side[k]);
             }
-            sweep_common(n, i, now, next);
+            sweep_squares(n, i, now, next);
         }
     }
 
-    PERCUSS_INLINE static void sweep_log_derivative(const Side& side, int n, int i, SideSums& now, SideSums& next) {
-        Part s0{}, p0{}, q0{}, r0{}, s1{}, p1{}, q1{}, r1{};
+    /// Keeps a number in a register where the compiler would read it from memory again for the next product.
+    PERCUSS_INLINE static Part hold(Part a) {
+#if defined(__AVX512F__)
+        asm("" : "+v"(a));
+#elif defined(__x86_64__)
+        asm("" : "+x"(a));
+#endif
+        return a;
+    }
+
+    PERCUSS_INLINE void sweep_elastic(int n, int k, int i, SideSums& now, SideSums& next) const {
+        Part r0{}, c0{}, g0{}, r1{}, c1{}, g1{};
+        const auto add = [&](const Side& a, const Part& w0, const Part& w1) {
+            const Part r = hold(a.root.part[i]);
+            const Part c = hold(a.c.part[i]);
+            const Part g = hold(a.g.part[i]);
+            r0 += r * w0, c0 += c * w0, g0 += g * w0;
+            r1 += r * w1, c1 += c * w1, g1 += g * w1;
+        };
         if (n > 0) {
-            Part before = side.w[at(n - 1)].part[i];
-            s0 = side.s[1].part[i] * before;
-            p0 = side.p[1].part[i] * before;
-            q0 = side.q[1].part[i] * before;
-            r0 = side.root[1].part[i] * before;
-            for (int j = 2; j <= n; ++j) {
-                const Part w = side.w[at(n - j)].part[i];
-                const Part s = side.s[at(j)].part[i];
-                const Part p = side.p[at(j)].part[i];
-                const Part q = side.q[at(j)].part[i];
-                const Part r = side.root[at(j)].part[i];
-                s0 += s * w, p0 += p * w, q0 += q * w, r0 += r * w;
-                s1 += s * before, p1 += p * before, q1 += q * before, r1 += r * before;
+            Part before = c_[n - 2].side[k].w.part[i];
+            for (int j = 3; j < n; ++j) {
+                const Part w = hold(c_[n - j].side[k].w.part[i]);
+                add(c_[j].side[k], w, before);
                 before = w;
             }
+            const Part last = hold(c_[n - 1].side[k].w.part[i]);
+            const Side& one = c_[1].side[k];
+            r0 += one.root.part[i] * last, c0 += one.c.part[i] * last, g0 += one.g.part[i] * last;
+            add(c_[2].side[k], c_[n - 2].side[k].w.part[i], last);
+            if (n > 2) { add(c_[n].side[k], c_[0].side[k].w.part[i], one.w.part[i]); }
         }
-        now.sw.part[i] = s0, now.pw.part[i] = p0, now.qw.part[i] = q0, now.rw.part[i] = r0;
-        next.sw.part[i] = s1, next.pw.part[i] = p1, next.qw.part[i] = q1, next.rw.part[i] = r1;
+        now.rw.part[i] = r0, now.cw.part[i] = c0, now.gw.part[i] = g0;
+        next.rw.part[i] = r1, next.cw.part[i] = c1, next.gw.part[i] = g1;
     }
 
-    PERCUSS_INLINE static void sweep_branch(const Side& side, int n, int i, SideSums& now, SideSums& next) {
+    PERCUSS_INLINE void sweep_viscous(int n, int k, int i, SideSums& now, SideSums& next) const {
         Part e0{}, l0{}, m0{}, e1{}, l1{}, m1{};
-        if (n > 0) {
-            Part e_before = side.e[at(n - 1)].part[i];
-            Part z_before{};
-            e0 = side.s[1].part[i] * e_before;
+        const auto add = [&](const Side& a, const Part& e, const Part& z, const Part& e_next, const Part& z_next) {
+            const Part s = hold(a.s.part[i]);
+            e0 += s * e, e1 += s * e_next;
             if constexpr (Viscous) {
-                z_before = side.z[at(n - 1)].part[i];
-                l0 = side.l[1].part[i] * z_before;
-                m0 = side.m[1].part[i] * z_before;
+                const Part l = hold(a.l.part[i]);
+                const Part m = hold(a.m.part[i]);
+                l0 += l * z, m0 += m * z;
+                l1 += l * z_next, m1 += m * z_next;
             }
-            for (int j = 2; j <= n; ++j) {
-                const Part e = side.e[at(n - j)].part[i];
-                const Part s = side.s[at(j)].part[i];
-                e0 += s * e, e1 += s * e_before;
+        };
+        if (n > 0) {
+            Part e_before = c_[n - 2].side[k].e.part[i];
+            Part z_before = c_[n - 2].side[k].z.part[i];
+            for (int j = 3; j < n; ++j) {
+                const Part e = hold(c_[n - j].side[k].e.part[i]);
+                const Part z = hold(c_[n - j].side[k].z.part[i]);
+                add(c_[j].side[k], e, z, e_before, z_before);
                 e_before = e;
-                if constexpr (Viscous) {
-                    const Part z = side.z[at(n - j)].part[i];
-                    const Part l = side.l[at(j)].part[i];
-                    const Part m = side.m[at(j)].part[i];
-                    l0 += l * z, m0 += m * z;
-                    l1 += l * z_before, m1 += m * z_before;
-                    z_before = z;
-                }
+                z_before = z;
+            }
+            const Side& last = c_[n - 1].side[k];
+            const Side& one = c_[1].side[k];
+            e0 += one.s.part[i] * last.e.part[i];
+            if constexpr (Viscous) {
+                l0 += one.l.part[i] * last.z.part[i];
+                m0 += one.m.part[i] * last.z.part[i];
+            }
+            const Side& next_to_last = c_[n - 2].side[k];
+            add(c_[2].side[k], next_to_last.e.part[i], next_to_last.z.part[i], last.e.part[i], last.z.part[i]);
+            if (n > 2) {
+                const Side& first = c_[0].side[k];
+                add(c_[n].side[k], first.e.part[i], first.z.part[i], one.e.part[i], one.z.part[i]);
             }
         }
         now.se.part[i] = e0, now.lz.part[i] = l0, now.mz.part[i] = m0;
         next.se.part[i] = e1, next.lz.part[i] = l1, next.mz.part[i] = m1;
     }
 
-    PERCUSS_INLINE void sweep_common(int n, int i, Sums& now, Sums& next) const {
-        Part x0{}, b0{}, x1{}, b1{};
+    /// Squares of x and of the roots, half of whose terms come twice, and x b.
+    PERCUSS_INLINE void sweep_squares(int n, int i, Sums& now, Sums& next) const {
+        Part x0{}, p0{}, q0{}, b0{}, x1{}, p1{}, q1{}, b1{};
         if (n > 0) {
-            Part b_before = b_[at(n - 1)].part[i];
-            Part x_before = x_[at(n)].part[i];
-            b0 = x_[1].part[i] * b_before;
-            x0 = x_[1].part[i] * x_before;
-            for (int j = 2; j <= n; ++j) {
-                const Part x = x_[at(j)].part[i];
-                const Part b = b_[at(n - j)].part[i];
-                const Part other = x_[at(n + 1 - j)].part[i];
-                b0 += x * b, b1 += x * b_before;
-                x0 += x * other, x1 += x * x_before;
-                b_before = b;
-                x_before = other;
+            const Coefficients& middle = c_[n / 2 + 1];
+            Part x_high = hold(middle.x.part[i]);
+            Part p_high = hold(middle.side[0].root.part[i]);
+            Part q_high = hold(middle.side[1].root.part[i]);
+            Part b_high = hold(c_[n / 2].b.part[i]);
+            x1 = 0.5 * x_high * x_high, p1 = 0.5 * p_high * p_high, q1 = 0.5 * q_high * q_high;
+            b1 = x_high * b_high;
+            for (int j = n / 2; j >= 2; --j) {
+                const Coefficients& low = c_[j];
+                const Coefficients& high = c_[n + 2 - j];
+                const Part x = hold(low.x.part[i]);
+                const Part p = hold(low.side[0].root.part[i]);
+                const Part q = hold(low.side[1].root.part[i]);
+                const Part b = hold(c_[j - 1].b.part[i]);
+                x0 += x * x_high, p0 += p * p_high, q0 += q * q_high;
+                b0 += x * b_high, b0 += x_high * b;
+                x_high = hold(high.x.part[i]);
+                p_high = hold(high.side[0].root.part[i]);
+                q_high = hold(high.side[1].root.part[i]);
+                b_high = hold(c_[n + 1 - j].b.part[i]);
+                x1 += x * x_high, p1 += p * p_high, q1 += q * q_high;
+                b1 += x * b_high, b1 += x_high * b;
             }
+            const Coefficients& one = c_[1];
+            b0 += one.x.part[i] * b_high, b0 += x_high * c_[0].b.part[i];
+            x0 += one.x.part[i] * x_high;
+            p0 += one.side[0].root.part[i] * p_high;
+            q0 += one.side[1].root.part[i] * q_high;
         }
-        now.xx.part[i] = x0, now.xb.part[i] = b0;
-        next.xx.part[i] = x1, next.xb.part[i] = b1;
+        now.xx.part[i] = 2.0 * x0, now.side[0].rr.part[i] = 2.0 * p0, now.side[1].rr.part[i] = 2.0 * q0;
+        next.xx.part[i] = 2.0 * x1, next.side[0].rr.part[i] = 2.0 * p1, next.side[1].rr.part[i] = 2.0 * q1;
+        now.xb.part[i] = b0;
+        next.xb.part[i] = b1;
     }
 
     /// The terms that sweep(n - 1) could not have.
     void complete(int n, Sums& sums) const {
-        const auto add = [n](V& sum, const Series& a, const Series& b) {
-            sum += a[1] * b[at(n - 1)];
-            if (n > 1) { sum += a[at(n)] * b[0]; }
-        };
+        const double twice = n > 1 ? 2.0 : 1.0;
         for (int k = 0; k < 2; ++k) {
-            const Side& side = sides_[k];
             SideSums& to = sums.side[k];
-            add(to.sw, side.s, side.w);
-            add(to.pw, side.p, side.w);
-            add(to.qw, side.q, side.w);
-            add(to.rw, side.root, side.w);
-            add(to.se, side.s, side.e);
-            if constexpr (Viscous) {
-                add(to.lz, side.l, side.z);
-                add(to.mz, side.m, side.z);
-            }
+            const auto add = [&](const Side& a, const Side& b) {
+                to.rw += a.root * b.w;
+                to.cw += a.c * b.w;
+                to.gw += a.g * b.w;
+                to.se += a.s * b.e;
+                if constexpr (Viscous) {
+                    to.lz += a.l * b.z;
+                    to.mz += a.m * b.z;
+                }
+            };
+            add(c_[1].side[k], c_[n - 1].side[k]);
+            if (n > 1) { add(c_[n].side[k], c_[0].side[k]); }
+            to.rr += twice * c_[1].side[k].root * c_[n].side[k].root;
         }
-        add(sums.xb, x_, b_);
-        sums.xx += (n > 1 ? 2.0 : 1.0) * (x_[1] * x_[at(n)]);
-    }
-
-    /// phi^2 = phi_pp^2/4 (3/2 -+ 2 cos theta + cos(2 theta)/2), coefficient n.
-    void drive(int n, V& first, V& second) {
-        if (n > 0) {
-            inverse_factorial_ /= n;
-            power_of_two_ *= 2.0;
-        }
-        // derivatives of cos cycle: cos, -sin, -cos, sin
-        const double scale = (n % 4 == 1 || n % 4 == 2) ? -inverse_factorial_ : inverse_factorial_;
-        const V c1 = (n % 2 == 0 ? cos1_ : sin1_) * (2.0 * phi_mean_ * scale);
-        const V c2 = (n % 2 == 0 ? cos2_ : sin2_) * (0.5 * phi_mean_ * scale * power_of_two_);
-        const V even = n == 0 ? c2 + 1.5 * phi_mean_ : c2;
-        first = even - c1;
-        second = even + c1;
+        sums.xb += c_[1].x * c_[n - 1].b;
+        if (n > 1) { sums.xb += c_[n].x * c_[0].b; }
+        sums.xx += twice * c_[1].x * c_[n].x;
     }
 
     /// From coefficients 0..n of x, v, L (and the internal series) to coefficient n + 1.
-    void extend(int n, Sums& sums) {
-        const double reciprocal = 1.0 / (n + 1);
-        x_[at(n + 1)] = v_[at(n)] * (inverse_omega_ * reciprocal);
-        V phi2[2];
+    void extend(int n, const Sums& sums) {
+        const Factors& factor = factors_[static_cast<std::size_t>(n)];
+        Coefficients& now = c_[n];
+        Coefficients& next = c_[n + 1];
+        next.x = now.v * factor.rate;
+        V cos1 = (n % 2 == 0 ? cos1_ : sin1_) * factor.cos1;
+        V even = (n % 2 == 0 ? cos2_ : sin2_) * factor.cos2;
+        if (n == 0) { even = even + mean_square_; }
+        const V phi2[2] = {even - cos1, even + cos1};
         V b[2];
-        drive(n, phi2[0], phi2[1]);
         for (int k = 0; k < 2; ++k) {
-            Side& side = sides_[k];
-            SideSums& sum = sums.side[k];
-            const V next_s = sums.xx + 2.0 * (u_[k] * x_[at(n + 1)]);
-            const V w = inverse_s_[k] * ((n + 1.0) * next_s - sum.sw);
-            side.s[at(n + 1)] = next_s;
-            side.w[at(n)] = w;
-            side.p[at(n + 1)] = (half_alpha_a_ * reciprocal) * (sum.pw + side.p[0] * w);
-            side.q[at(n + 1)] = (-half_alpha_a_ * reciprocal) * (sum.qw + side.q[0] * w);
-            const V slope = -0.5 * (sum.rw + side.root[0] * w);
-            side.root[at(n + 1)] = reciprocal * slope;
-            V stress = k1_ * side.p[at(n)] - k2_ * side.q[at(n)];
+            const SideSums& sum = sums.side[k];
+            const Side& first = c_[0].side[k];
+            Side& from = now.side[k];
+            Side& to = next.side[k];
+            to.s = sums.xx + twice_u_[k] * next.x;
+            to.root = half_inverse_root_[k] * (to.s - sum.rr);
+            const V slope = factor.next * to.root;
+            from.w = inverse_root_[k] * (slope - sum.rw);
+            to.c = factor.alpha * (sum.gw + first.g * from.w);
+            to.g = factor.alpha * (sum.cw + first.c * from.w);
+            V stress = from.c + damping_rate_ * slope;
             if constexpr (Viscous) {
-                const V& l = side.l[at(n)];
-                const V& m = side.m[at(n)];
-                V excess = l - 0.5 * m;
+                V excess = from.l - 0.5 * from.m;
                 if (n == 0) { excess = excess - 0.5; }
-                const V z = alpha_b_ * (0.5 * w - relaxation_ * excess);
-                side.z[at(n)] = z;
-                side.l[at(n + 1)] = reciprocal * (sum.lz + side.l[0] * z);
-                side.m[at(n + 1)] = -reciprocal * (sum.mz + side.m[0] * z);
-                stress += k3_ * (l - m);
+                from.z = alpha_b_ * from.w - relaxation_ * excess;
+                to.l = factor.reciprocal * (sum.lz + first.l * from.z);
+                to.m = -factor.reciprocal * (sum.mz + first.m * from.z);
+                stress += k3_ * (from.l - from.m);
             }
-            side.e[at(n)] = inverse_s_[k] * (stress - sum.se);
-            b[k] = side.e[at(n)] - damping_rate_ * slope - phi2[k];
+            from.e = inverse_s_[k] * (stress - sum.se);
+            b[k] = from.e - phi2[k];
         }
-        b_[at(n)] = b[0] + b[1];
-        V acceleration = -layers_ * (sums.xb + u_[0] * b[0] + u_[1] * b[1]);
-        const V penetration = n == 0 ? x_[0] - stop_position() : x_[at(n)];
-        acceleration -= stiffness_ * penetration + damping_ * v_[at(n)];
-        v_[at(n + 1)] = acceleration * (inverse_omega_ * reciprocal);
+        now.b = b[0] + b[1];
+        const V penetration = n == 0 ? now.x - stop_position() : now.x;
+        const V stop = stiffness_ * penetration + damping_ * now.v;
+        const V force = sums.xb + u_[0] * b[0] + u_[1] * b[1];
+        next.v = (layers_ * force + stop) * -factor.rate;
     }
 
     MembraneJet<double, Viscous, 0> single_;  ///< converts states
-    double length_, inverse_omega_, half_alpha_a_, alpha_b_, layers_;
-    double k1_, k2_, k3_, damping_rate_, relaxation_, phi_mean_;
-    double inverse_factorial_ = 1.0;
-    double power_of_two_ = 1.0;
+    double length_, half_alpha_a_, alpha_b_, layers_, damping_rate_;
+    double k1_, k2_, k3_, relaxation_, mean_square_;
+    std::array<Factors, static_cast<std::size_t>(MaxOrder)> factors_;
     V stiffness_, damping_, cos1_, sin1_, cos2_, sin2_;
-    V u_[2], inverse_s_[2];
-    Series x_, v_;
-    Series b_;  ///< of both membranes together
-    Side sides_[2];
+    V u_[2], twice_u_[2], inverse_s_[2], inverse_root_[2], half_inverse_root_[2];
+    Coefficients c_[MaxOrder + 1];
 };
 
 }  // namespace PERCUSS_ISA

@@ -34,8 +34,9 @@ public:
     [[nodiscard]] double stop_position() const { return x_stop_; }
     [[nodiscard]] double stop_stiffness() const { return stop_stiffness_; }
     [[nodiscard]] double stop_damping() const { return stop_damping_; }
-    [[nodiscard]] const Series& x() const { return x_; }
-    [[nodiscard]] const Series& v() const { return v_; }
+    /// Coefficients of displacement and velocity.
+    [[nodiscard]] const V& x(int n) const { return x_[at(n)]; }
+    [[nodiscard]] const V& v(int n) const { return v_[at(n)]; }
 
     /// Takes (x, x') into a lane.
     void load(std::size_t lane, const std::array<double, states>& y) {
