@@ -197,10 +197,7 @@ private:
     /// are added last, so that the processor need not wait for them.
     void sweep(int n, Sums& now, Sums& next) const {
         for (int i = 0; i < V::parts; ++i) {
-            for (int k = 0; k < 2; ++k) {
-                sweep_elastic(n, k, i, now.side[k], next.side[k]);
-                sweep_viscous(n, k, i, now.side[k], next.side[k]);
-            }
+            for (int k = 0; k < 2; ++k) { sweep_side(n, k, i, now.side[k], next.side[k]); }
             sweep_squares(n, i, now, next);
         }
     }
@@ -215,35 +212,25 @@ private:
         return a;
     }
 
-    PERCUSS_INLINE void sweep_elastic(int n, int k, int i, SideSums& now, SideSums& next) const {
+    /// Products with w, for the sums of n and of n + 1.
+    struct ElasticProducts {
         Part r0{}, c0{}, g0{}, r1{}, c1{}, g1{};
-        const auto add = [&](const Side& a, const Part& w0, const Part& w1) {
+        PERCUSS_INLINE void add(const Side& a, int i, const Part& w, const Part& w_next) {
             const Part r = hold(a.root.part[i]);
             const Part c = hold(a.c.part[i]);
             const Part g = hold(a.g.part[i]);
-            r0 += r * w0, c0 += c * w0, g0 += g * w0;
-            r1 += r * w1, c1 += c * w1, g1 += g * w1;
-        };
-        if (n > 0) {
-            Part before = c_[n - 2].side[k].w.part[i];
-            for (int j = 3; j < n; ++j) {
-                const Part w = hold(c_[n - j].side[k].w.part[i]);
-                add(c_[j].side[k], w, before);
-                before = w;
-            }
-            const Part last = hold(c_[n - 1].side[k].w.part[i]);
-            const Side& one = c_[1].side[k];
-            r0 += one.root.part[i] * last, c0 += one.c.part[i] * last, g0 += one.g.part[i] * last;
-            add(c_[2].side[k], c_[n - 2].side[k].w.part[i], last);
-            if (n > 2) { add(c_[n].side[k], c_[0].side[k].w.part[i], one.w.part[i]); }
+            r0 += r * w, c0 += c * w, g0 += g * w;
+            r1 += r * w_next, c1 += c * w_next, g1 += g * w_next;
         }
-        now.rw.part[i] = r0, now.cw.part[i] = c0, now.gw.part[i] = g0;
-        next.rw.part[i] = r1, next.cw.part[i] = c1, next.gw.part[i] = g1;
-    }
-
-    PERCUSS_INLINE void sweep_viscous(int n, int k, int i, SideSums& now, SideSums& next) const {
+        PERCUSS_INLINE void add_now(const Side& a, int i, const Part& w) {
+            r0 += a.root.part[i] * w, c0 += a.c.part[i] * w, g0 += a.g.part[i] * w;
+        }
+    };
+    /// Products with e and z.
+    struct ViscousProducts {
         Part e0{}, l0{}, m0{}, e1{}, l1{}, m1{};
-        const auto add = [&](const Side& a, const Part& e, const Part& z, const Part& e_next, const Part& z_next) {
+        PERCUSS_INLINE void add(const Side& a, int i, const Part& e, const Part& z, const Part& e_next,
+                                const Part& z_next) {
             const Part s = hold(a.s.part[i]);
             e0 += s * e, e1 += s * e_next;
             if constexpr (Viscous) {
@@ -252,33 +239,58 @@ private:
                 l0 += l * z, m0 += m * z;
                 l1 += l * z_next, m1 += m * z_next;
             }
-        };
+        }
+        PERCUSS_INLINE void add_now(const Side& a, int i, const Part& e, const Part& z) {
+            e0 += a.s.part[i] * e;
+            if constexpr (Viscous) { l0 += a.l.part[i] * z, m0 += a.m.part[i] * z; }
+        }
+    };
+
+    /// Both kinds of products of one membrane: in one loop where there are registers for all sums, else in two.
+    PERCUSS_INLINE void sweep_side(int n, int k, int i, SideSums& now, SideSums& next) const {
+        constexpr bool together = numerics::register_lanes == 8;  // AVX-512 has 32 registers
+        ElasticProducts elastic;
+        ViscousProducts viscous;
         if (n > 0) {
-            Part e_before = c_[n - 2].side[k].e.part[i];
-            Part z_before = c_[n - 2].side[k].z.part[i];
+            const auto side = [&](int j) -> const Side& { return c_[j].side[k]; };
+            const auto w = [&](int j) { return hold(side(j).w.part[i]); };
+            const auto e = [&](int j) { return hold(side(j).e.part[i]); };
+            const auto z = [&](int j) { return Viscous ? hold(side(j).z.part[i]) : Part{}; };
+            Part w_next = w(n - 2);
+            Part e_next = e(n - 2);
+            Part z_next = z(n - 2);
             for (int j = 3; j < n; ++j) {
-                const Part e = hold(c_[n - j].side[k].e.part[i]);
-                const Part z = hold(c_[n - j].side[k].z.part[i]);
-                add(c_[j].side[k], e, z, e_before, z_before);
-                e_before = e;
-                z_before = z;
+                const Part w_now = w(n - j);
+                elastic.add(side(j), i, w_now, w_next);
+                w_next = w_now;
+                if constexpr (together) {
+                    const Part e_now = e(n - j);
+                    const Part z_now = z(n - j);
+                    viscous.add(side(j), i, e_now, z_now, e_next, z_next);
+                    e_next = e_now;
+                    z_next = z_now;
+                }
             }
-            const Side& last = c_[n - 1].side[k];
-            const Side& one = c_[1].side[k];
-            e0 += one.s.part[i] * last.e.part[i];
-            if constexpr (Viscous) {
-                l0 += one.l.part[i] * last.z.part[i];
-                m0 += one.m.part[i] * last.z.part[i];
+            for (int j = 3; j < n && !together; ++j) {
+                const Part e_now = e(n - j);
+                const Part z_now = z(n - j);
+                viscous.add(side(j), i, e_now, z_now, e_next, z_next);
+                e_next = e_now;
+                z_next = z_now;
             }
-            const Side& next_to_last = c_[n - 2].side[k];
-            add(c_[2].side[k], next_to_last.e.part[i], next_to_last.z.part[i], last.e.part[i], last.z.part[i]);
+            elastic.add(side(2), i, w(n - 2), w(n - 1));
+            viscous.add(side(2), i, e(n - 2), z(n - 2), e(n - 1), z(n - 1));
+            elastic.add_now(side(1), i, w(n - 1));
+            viscous.add_now(side(1), i, e(n - 1), z(n - 1));
             if (n > 2) {
-                const Side& first = c_[0].side[k];
-                add(c_[n].side[k], first.e.part[i], first.z.part[i], one.e.part[i], one.z.part[i]);
+                elastic.add(side(n), i, w(0), w(1));
+                viscous.add(side(n), i, e(0), z(0), e(1), z(1));
             }
         }
-        now.se.part[i] = e0, now.lz.part[i] = l0, now.mz.part[i] = m0;
-        next.se.part[i] = e1, next.lz.part[i] = l1, next.mz.part[i] = m1;
+        now.rw.part[i] = elastic.r0, now.cw.part[i] = elastic.c0, now.gw.part[i] = elastic.g0;
+        next.rw.part[i] = elastic.r1, next.cw.part[i] = elastic.c1, next.gw.part[i] = elastic.g1;
+        now.se.part[i] = viscous.e0, now.lz.part[i] = viscous.l0, now.mz.part[i] = viscous.m0;
+        next.se.part[i] = viscous.e1, next.lz.part[i] = viscous.l1, next.mz.part[i] = viscous.m1;
     }
 
     /// Squares of x and of the roots, half of whose terms come twice, and x b.
