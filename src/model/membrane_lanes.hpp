@@ -356,38 +356,29 @@ private:
         sums.xx += twice * c_[1].x * c_[n].x;
     }
 
-    /// From coefficients 0..n of x, v, L (and the internal series) to coefficient n + 1.
+    /// From coefficients 0..n of x, v, L (and the internal series) to coefficient n + 1: the motion first, on which the
+    /// next coefficient waits, then the powers of s.
     void extend(int n, const Sums& sums) {
         const Factors& factor = factors_[static_cast<std::size_t>(n)];
         Coefficients& now = c_[n];
         Coefficients& next = c_[n + 1];
         next.x = now.v * factor.rate;
-        V cos1 = (n % 2 == 0 ? cos1_ : sin1_) * factor.cos1;
+        const V cos1 = (n % 2 == 0 ? cos1_ : sin1_) * factor.cos1;
         V even = (n % 2 == 0 ? cos2_ : sin2_) * factor.cos2;
         if (n == 0) { even = even + mean_square_; }
         const V phi2[2] = {even - cos1, even + cos1};
+        V slope[2];
         V b[2];
         for (int k = 0; k < 2; ++k) {
             const SideSums& sum = sums.side[k];
-            const Side& first = c_[0].side[k];
             Side& from = now.side[k];
             Side& to = next.side[k];
             to.s = sums.xx + twice_u_[k] * next.x;
             to.root = half_inverse_root_[k] * (to.s - sum.rr);
-            const V slope = factor.next * to.root;
-            from.w = inverse_root_[k] * (slope - sum.rw);
-            to.c = factor.alpha * (sum.gw + first.g * from.w);
-            to.g = factor.alpha * (sum.cw + first.c * from.w);
-            V stress = from.c + damping_rate_ * slope;
-            if constexpr (Viscous) {
-                V excess = from.l - 0.5 * from.m;
-                if (n == 0) { excess = excess - 0.5; }
-                from.z = alpha_b_ * from.w - relaxation_ * excess;
-                to.l = factor.reciprocal * (sum.lz + first.l * from.z);
-                to.m = -factor.reciprocal * (sum.mz + first.m * from.z);
-                stress += k3_ * (from.l - from.m);
-            }
-            from.e = inverse_s_[k] * (stress - sum.se);
+            slope[k] = factor.next * to.root;
+            V stress = from.c - sum.se;
+            if constexpr (Viscous) { stress += k3_ * (from.l - from.m); }
+            from.e = inverse_s_[k] * (stress + damping_rate_ * slope[k]);
             b[k] = from.e - phi2[k];
         }
         now.b = b[0] + b[1];
@@ -395,6 +386,22 @@ private:
         const V stop = stiffness_ * penetration + damping_ * now.v;
         const V force = sums.xb + u_[0] * b[0] + u_[1] * b[1];
         next.v = (layers_ * force + stop) * -factor.rate;
+        for (int k = 0; k < 2; ++k) {
+            const SideSums& sum = sums.side[k];
+            const Side& first = c_[0].side[k];
+            Side& from = now.side[k];
+            Side& to = next.side[k];
+            from.w = inverse_root_[k] * (slope[k] - sum.rw);
+            to.c = factor.alpha * (sum.gw + first.g * from.w);
+            to.g = factor.alpha * (sum.cw + first.c * from.w);
+            if constexpr (Viscous) {
+                V excess = from.l - 0.5 * from.m;
+                if (n == 0) { excess = excess - 0.5; }
+                from.z = alpha_b_ * from.w - relaxation_ * excess;
+                to.l = factor.reciprocal * (sum.lz + first.l * from.z);
+                to.m = -factor.reciprocal * (sum.mz + first.m * from.z);
+            }
+        }
     }
 
     MembraneJet<double, Viscous, 0> single_;  ///< converts states

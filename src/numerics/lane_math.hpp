@@ -122,12 +122,20 @@ PERCUSS_INLINE LaneVector<N> abs(LaneVector<N> a) {
     }
     return a;
 }
-/// c[0] + c[1] x + ... + c[count - 1] x^(count - 1).
+/// c[0] + c[1] x + ... + c[Count - 1] x^(Count - 1), even and odd powers side by side, so that one need not wait for
+/// the other.
 template <int N, int Count>
 PERCUSS_INLINE LaneVector<N> polynomial(const double (&c)[Count], const LaneVector<N>& x) {
-    LaneVector<N> sum = all_lanes<N>(c[Count - 1]);
-    for (int j = Count - 2; j >= 0; --j) { sum = sum * x + c[j]; }
-    return sum;
+    static_assert(Count >= 2);
+    const LaneVector<N> square = x * x;
+    LaneVector<N> last = all_lanes<N>(c[Count - 1]);
+    LaneVector<N> but_one = all_lanes<N>(c[Count - 2]);
+    for (int j = Count - 3; j >= 0; --j) {
+        const LaneVector<N> next = last * square + c[j];
+        last = but_one;
+        but_one = next;
+    }
+    return but_one + last * x;
 }
 
 /// Natural logarithm of normal positive numbers, to about 2 units in the last place; NaN and infinity stay, zero gives
