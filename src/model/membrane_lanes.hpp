@@ -246,9 +246,8 @@ private:
         }
     };
 
-    /// Both kinds of products of one membrane: in one loop where there are registers for all sums, else in two.
+    /// Both kinds of products of one membrane. Two loops: the sums of one kind and their factors fit 16 registers.
     PERCUSS_INLINE void sweep_side(int n, int k, int i, SideSums& now, SideSums& next) const {
-        constexpr bool together = numerics::register_lanes == 8;  // AVX-512 has 32 registers
         ElasticProducts elastic;
         ViscousProducts viscous;
         if (n > 0) {
@@ -263,15 +262,8 @@ private:
                 const Part w_now = w(n - j);
                 elastic.add(side(j), i, w_now, w_next);
                 w_next = w_now;
-                if constexpr (together) {
-                    const Part e_now = e(n - j);
-                    const Part z_now = z(n - j);
-                    viscous.add(side(j), i, e_now, z_now, e_next, z_next);
-                    e_next = e_now;
-                    z_next = z_now;
-                }
             }
-            for (int j = 3; j < n && !together; ++j) {
+            for (int j = 3; j < n; ++j) {
                 const Part e_now = e(n - j);
                 const Part z_now = z(n - j);
                 viscous.add(side(j), i, e_now, z_now, e_next, z_next);
