@@ -49,7 +49,7 @@ const ParameterVector overdamped_stop = test::with(rattling, model::spring::stop
 
 const std::vector<Scene> scenes = {
     {"membranes", membranes, StopLaw::kelvin_voigt, true, impacting, 2.0, StopMode::hybrid, 30},
-    {"membranes, backwards in phase order", membranes, StopLaw::kelvin_voigt, true, paper_defaults, 1.3},
+    {"membranes at the reference frequency", membranes, StopLaw::kelvin_voigt, true, paper_defaults, 1.3},
     {"membranes, no tension", membranes, StopLaw::no_tension, true, impacting, 2.0, StopMode::hybrid, 30},
     {"membranes, no stop", membranes, StopLaw::none, true, impacting, 2.0, StopMode::hybrid, 0},
     {"membranes, stop off", membranes, StopLaw::kelvin_voigt, true, impacting, 2.0, StopMode::off, 0},
@@ -129,9 +129,9 @@ double relative_distance(const State& a, const State& b) {
 }
 
 /// Both ways do the same arithmetic in another order: a few units in the last place (1e-16) per step, some tens of
-/// steps per cycle. A blow multiplies what is there by about 5, an undamped stop (k = 200 to 2500) by up to 20; starts
-/// of these tests see up to ten blows. Measured: below 1e-12 everywhere.
-constexpr double rounding = 1e-11;
+/// steps per cycle. A blow multiplies what is there by about 5, an undamped stop (k = 200) by up to 20; starts of these
+/// tests see up to ten blows. Measured: below 1e-13 for membranes, up to 5e-12 at the undamped stops.
+constexpr double rounding = 5e-11;
 
 void check_agree(const std::vector<EnsembleMember>& lanes, const std::vector<EnsembleMember>& single,
                  double apart = rounding) {

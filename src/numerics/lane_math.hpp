@@ -13,19 +13,21 @@
 namespace percuss::numerics {
 inline namespace PERCUSS_ISA {
 
-/// One machine register of doubles, and integers of the same size.
+/// One machine register of doubles, and integers of the same size: signed as comparisons give them, unsigned for
+/// arithmetic on the bits of doubles, where NaN and infinity overflow.
 template <int N>
 using LanePart = typename LaneVector<N>::Part;
 template <int N>
-struct LaneBits {
-    typedef std::int64_t type  // NOLINT(modernize-use-using)
-        __attribute__((vector_size(LaneVector<N>::width * sizeof(std::int64_t))));
+struct LaneIntegers {
+    static constexpr std::size_t size = LaneVector<N>::width * sizeof(std::int64_t);
+    typedef std::int64_t Truth __attribute__((vector_size(size)));  // NOLINT(modernize-use-using)
+    typedef std::uint64_t Bits __attribute__((vector_size(size)));  // NOLINT(modernize-use-using)
 };
 
 /// What a comparison of lanes gives: all bits of a lane are set, or none.
 template <int N>
 struct LaneMask {
-    using Part = typename LaneBits<N>::type;
+    using Part = typename LaneIntegers<N>::Truth;
     Part part[LaneVector<N>::parts];
 
     PERCUSS_INLINE bool operator[](std::size_t i) const {
@@ -116,9 +118,9 @@ PERCUSS_INLINE LaneVector<N> max(const LaneVector<N>& a, const LaneVector<N>& b)
 }
 template <int N>
 PERCUSS_INLINE LaneVector<N> abs(LaneVector<N> a) {
-    using Bits = typename LaneBits<N>::type;
+    using Bits = typename LaneIntegers<N>::Bits;
     for (int i = 0; i < LaneVector<N>::parts; ++i) {
-        a.part[i] = (LanePart<N>)((Bits)a.part[i] & std::int64_t{0x7fffffffffffffff});
+        a.part[i] = (LanePart<N>)((Bits)a.part[i] & std::uint64_t{0x7fffffffffffffff});
     }
     return a;
 }
@@ -142,11 +144,11 @@ PERCUSS_INLINE LaneVector<N> polynomial(const double (&c)[Count], const LaneVect
 /// about -709. With a = 2^e m, m in [sqrt(1/2), sqrt(2)): log m = 2 artanh((m - 1)/(m + 1)).
 template <int N>
 PERCUSS_INLINE LaneVector<N> log(const LaneVector<N>& a) {
-    using Bits = typename LaneBits<N>::type;
-    constexpr std::int64_t one = 0x3ff0000000000000;
-    constexpr std::int64_t root_half = 0x3fe6a09e667f3bcd;
-    constexpr std::int64_t exponent = 0x7ff0000000000000;
-    constexpr std::int64_t two_to_52 = 0x4330000000000000;
+    using Bits = typename LaneIntegers<N>::Bits;
+    constexpr std::uint64_t one = 0x3ff0000000000000;
+    constexpr std::uint64_t root_half = 0x3fe6a09e667f3bcd;
+    constexpr std::uint64_t exponent = 0x7ff0000000000000;
+    constexpr std::uint64_t two_to_52 = 0x4330000000000000;
     LaneVector<N> m;
     LaneVector<N> e;
     for (int i = 0; i < LaneVector<N>::parts; ++i) {
@@ -171,7 +173,7 @@ PERCUSS_INLINE LaneVector<N> log(const LaneVector<N>& a) {
 /// Exponential function to about 1 unit in the last place; below -708 and above 709 its values there. NaN stays.
 template <int N>
 PERCUSS_INLINE LaneVector<N> exp(const LaneVector<N>& a) {
-    using Bits = typename LaneBits<N>::type;
+    using Bits = typename LaneIntegers<N>::Bits;
     constexpr double shifter = 0x1.8p52;
     constexpr double log2_high = 0x1.62e42fefp-1;
     constexpr double log2_low = 0x1.473de6af278edp-34;
@@ -195,7 +197,7 @@ PERCUSS_INLINE LaneVector<N> exp(const LaneVector<N>& a) {
 /// have 33 bits.
 template <int N>
 PERCUSS_INLINE void cos_sin(const LaneVector<N>& a, LaneVector<N>& c, LaneVector<N>& s) {
-    using Bits = typename LaneBits<N>::type;
+    using Bits = typename LaneIntegers<N>::Bits;
     constexpr double shifter = 0x1.8p52;
     constexpr double part1 = 0x1.921fb544p0;
     constexpr double part2 = 0x1.0b4611a6p-34;
@@ -212,7 +214,7 @@ PERCUSS_INLINE void cos_sin(const LaneVector<N>& a, LaneVector<N>& c, LaneVector
     const LaneVector<N> cos_r = (z * z * polynomial<N>(cosine, z) - z * 0.5) + 1.0;
     for (int i = 0; i < LaneVector<N>::parts; ++i) {
         const Bits quadrant = (Bits)shifted.part[i];
-        const Bits odd = (quadrant & 1) != 0;
+        const typename LaneIntegers<N>::Truth odd = (quadrant & 1) != 0;
         const Bits sin_bits = odd ? (Bits)cos_r.part[i] : (Bits)sin_r.part[i];
         const Bits cos_bits = odd ? (Bits)sin_r.part[i] : (Bits)cos_r.part[i];
         s.part[i] = (LanePart<N>)(sin_bits ^ ((quadrant & 2) << 62));

@@ -69,9 +69,10 @@ int variations(const Coefficients& b, int n) {
     return count;
 }
 
-/// The root between lower and upper, where the polynomial has the signs -after and after: Newton from `t`, kept inside
-/// a shrinking bracket.
-double polish(const Search& search, double lower, double upper, double t, int after) {
+/// The root between lower and upper, where the polynomial has the signs -after and after: Newton kept inside a
+/// shrinking bracket.
+double polish(const Search& search, double lower, double upper, int after) {
+    double t = 0.5 * (lower + upper);
     for (int iteration = 0; iteration < 80; ++iteration) {
         double value = 0.0;
         double slope = 0.0;
@@ -104,11 +105,7 @@ void isolate(const Search& search, const Coefficients& b, double lower, double w
             const double x = b[static_cast<std::size_t>(i)];
             after = (x > 0.0) - (x < 0.0);
         }
-        const double first = b[0];
-        const double last = b[static_cast<std::size_t>(n)];
-        const double chord = first / (first - last);  // outside [0, 1] or NaN unless the ends have opposite signs
-        const double guess = chord > 0.0 && chord < 1.0 ? chord : 0.5;
-        record(search, polish(search, lower, lower + width, lower + guess * width, after), after);
+        record(search, polish(search, lower, lower + width, after), after);
         return;
     }
     if (depth == max_depth) { return; }
