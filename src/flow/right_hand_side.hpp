@@ -59,9 +59,7 @@ public:
     [[nodiscard]] virtual double centre_derivative(const ParameterVector& p, const ParameterVector& dp) const = 0;
     /// As in Integrator.
     [[nodiscard]] virtual State rest_state(const ParameterVector& p) const = 0;
-    [[nodiscard]] virtual StateRange internal_range(const ParameterVector& /*p*/, double /*reach*/) const {
-        return {};
-    }
+    [[nodiscard]] virtual StateRange internal_range(const ParameterVector& /*p*/, double /*reach*/) const { return {}; }
     [[nodiscard]] virtual double linear_resonance(const ParameterVector& p) const = 0;
 
     void rate(const ParameterVector& p, double theta, const State& state, bool touching, State& out) const {
