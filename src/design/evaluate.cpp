@@ -2,6 +2,7 @@
 
 #include "design/measure.hpp"
 #include "design/operating_point.hpp"
+#include "design/sampled_check.hpp"
 #include "design/scene.hpp"
 #include "design/uniqueness.hpp"
 
@@ -268,9 +269,22 @@ private:
             result_.status = EvaluationStatus::not_unique;
             result_.reason = std::move(tier_one.rejection);
         }
-        // The sampled tiers are not in this version: what was asked for has then not been checked.
-        if (problem_.single_stable > SingleStable::orbit && result_.uniqueness.verdict == Verdict::unique) {
-            result_.uniqueness.verdict = Verdict::not_checked;
+        if (problem_.single_stable > SingleStable::orbit && result_.uniqueness.verdict != Verdict::not_unique) {
+            judge_by_starts();
+        }
+    }
+
+    void judge_by_starts() {
+        const orbit::Image image =
+            orbit::apply(system_, orbit_.map, orbit_.state, orbit::Differentiate::nothing, {}, flow::observe_extrema);
+        const double amplitude = 0.5 * (image.observed[orbit::x_max].value - image.observed[orbit::x_min].value);
+        const flow::System scout = scout_.at_omega(system_.omega());
+        TierTwo tier_two = check_tier_two({system_, scout, scaled_.scales, orbit_, amplitude, problem_.sampling});
+        tier_two.uniqueness.checked += "; " + result_.uniqueness.checked;
+        result_.uniqueness = std::move(tier_two.uniqueness);
+        if (!tier_two.rejection.empty()) {
+            result_.status = EvaluationStatus::not_unique;
+            result_.reason = std::move(tier_two.rejection);
         }
     }
 
@@ -299,6 +313,10 @@ Evaluator::Evaluator(Evaluator&&) noexcept = default;
 Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 const Problem& Evaluator::problem() const { return implementation_->problem; }
+
+flow::System Evaluator::system(const Specification& actuator) const {
+    return {implementation_->scene.own.get(), model::scale(actuator).parameters, nullptr};
+}
 
 Evaluation Evaluator::evaluate(const Specification& actuator, const Demand& demand) const {
     model::validate(actuator);

@@ -48,7 +48,8 @@ struct OrbitReport {
 
 /// A motion other than the tuned one, found by the uniqueness check.
 struct Attractor {
-    int period = 0;
+    int period = 0;                      ///< drive cycles, 0 for aperiodic motions
+    std::string_view kind = "periodic";  ///< periodic | chaotic | quasi-periodic | undecided
     std::vector<double> state;
     double peak_force = absent;
     double amplitude = absent;

@@ -42,6 +42,14 @@ struct SolverOptions {
     std::string instruction_set = "auto";  ///< auto | v2 | v3 | v4 | generic
 };
 
+/// Starts of the sampled uniqueness check (tier 2).
+struct Sampling {
+    long starts = 512;
+    std::uint64_t seed = 1;
+    int jobs = 1;       ///< threads; results do not depend on it
+    int cycles = 1000;  ///< budget of each start, drive cycles
+};
+
 struct Problem {
     model::Specification actuator;
     double margin = 0.01;  ///< operate at (1 - margin) times the edge
@@ -49,6 +57,7 @@ struct Problem {
     std::vector<Objective> objectives;
     std::vector<Limit> limits;
     SingleStable single_stable = SingleStable::orbit;
+    Sampling sampling;
     SolverOptions solver;
 };
 

@@ -20,6 +20,13 @@ std::size_t states_of(model::Family family) {
     return static_cast<std::size_t>(is_spring ? model::spring::states : model::membrane::states);
 }
 
+void read_sampling(const SettingList& settings, design::Sampling& sampling, Troubles& troubles) {
+    with(settings, "uniqueness.starts", troubles,
+         [&](const Setting& s) { sampling.starts = parse_count(s, 1, 100'000'000); });
+    with(settings, "uniqueness.cycles", troubles,
+         [&](const Setting& s) { sampling.cycles = parse_count(s, 1, 10'000'000); });
+}
+
 void read_optimiser(const SettingList& settings, study::OptimiserOptions& options, Troubles& troubles) {
     with(settings, "optimiser.method", troubles,
          [&](const Setting& s) { options.method = parse_choice(s, optimise::methods()); });

@@ -32,7 +32,7 @@ std::vector<model::Key> gradient_keys(const design::Problem& problem) {
 EvaluateStudyResult run_evaluate(const StudyProblem& problem, bool gradients) {
     const auto start = std::chrono::steady_clock::now();
     EvaluateStudyResult result;
-    const design::Evaluator evaluator(problem.design);
+    const design::Evaluator evaluator(design_problem(problem));
     design::Demand demand;
     const auto quantities = design::reported_quantities(problem.design.actuator.family);
     demand.quantities.assign(quantities.begin(), quantities.end());
