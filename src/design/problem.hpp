@@ -6,6 +6,7 @@
 #include "model/specification.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,8 @@ struct Sampling {
     std::uint64_t seed = 1;
     int jobs = 1;       ///< threads; results do not depend on it
     int cycles = 1000;  ///< budget of each start, drive cycles
+    /// Distance kept from the window of a motion that refuted a design, relative; absent: as from the edge.
+    std::optional<double> margin;
 };
 
 struct Problem {

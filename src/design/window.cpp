@@ -19,7 +19,9 @@ using model::Specification;
 /// The branch is followed within these multiples of the frequency where the motion was met.
 constexpr double range_below = 0.5;
 constexpr double range_above = 2.0;
-constexpr double smallest_step = 1.0 / 512.0;
+constexpr double first_step = 0.125;
+constexpr double bold_distance = 0.05;  ///< a design so near is tried in one step
+constexpr double smallest_step = 1.0 / 1024.0;
 
 double size_of(const flow::System& system) {
     return std::max(system.stop_position() - system.integrator->centre(system.parameters), 1e-3);
@@ -27,6 +29,18 @@ double size_of(const flow::System& system) {
 
 WindowEnd end_from(const branch::BoundaryPoint& found) {
     return {found.kind, found.point.motion, found.contact, found.angle, found.point.parameter};
+}
+
+/// A fold so near a grazing point of the same branch that both are one end: then the grazing point, whose equations
+/// stay well scaled when the design moves.
+const branch::BoundaryPoint& grazing_beside(const branch::Branch& branch, const branch::BoundaryPoint& found) {
+    constexpr double one_end = 1e-5;  // relative; the margin is a thousand times that
+    if (found.kind != Kind::fold) { return found; }
+    for (const branch::BoundaryPoint& other : branch.boundaries) {
+        const double apart = std::abs(other.point.parameter - found.point.parameter);
+        if (other.kind == Kind::grazing && apart <= one_end * found.point.parameter) { return other; }
+    }
+    return found;
 }
 
 Specification between(const Specification& a, const Specification& b, double share) {
@@ -57,16 +71,48 @@ boundary::CriticalPoint solve_end(const flow::System& system, const Specificatio
                                     size_of(here), directions);
 }
 
-/// The end moved to another design when it stays near; false when it is lost.
-bool move_end(const flow::System& system, const Specification& spec, WindowEnd& end) {
+/// Both ends on their way from one design to another, at share `at` of it.
+struct Ends {
+    double at = 0.0;
+    WindowEnd lower;
+    WindowEnd upper;
+    [[nodiscard]] double width() const { return upper.omega - lower.omega; }
+};
+
+/// The end carried on along the line through its last two places.
+WindowEnd predict(const flow::System& system, const WindowEnd& before, const WindowEnd& here, double ratio) {
+    WindowEnd guess = here;
+    const numerics::Vector from = orbit::pack(system, before.motion);
+    const numerics::Vector to = orbit::pack(system, here.motion);
+    guess.motion = orbit::unpack(system, to + ratio * (to - from), here.motion);
+    guess.omega = here.omega + ratio * (here.omega - before.omega);
+    guess.angle = here.angle + ratio * (here.angle - before.angle);
+    return guess;
+}
+
+/// The end solved for from a guess; false when it is lost or jumps.
+bool correct(const flow::System& system, const Specification& spec, WindowEnd& end) {
     const auto solved = solve_end(system, spec, end, {});
-    if (!solved.ok() || std::abs(solved.parameter - end.omega) > 0.05 * end.omega) { return false; }
+    if (!solved.ok() || std::abs(solved.parameter - end.omega) > 0.01 * end.omega) { return false; }
     for (const auto& contact : solved.motion.sequence.contacts) {
         if (contact.speed < -1e-9) { return false; }
     }
     end.motion = solved.motion;
     end.omega = solved.parameter;
     end.angle = solved.angle;
+    return true;
+}
+
+/// Both ends at the target, predicted from the last two places; false when one is lost or they fall together.
+bool carry(const flow::System& system, const Intruder& intruder, const Specification& design, const Ends& before,
+           Ends& ends, double target) {
+    const Specification spec = between(intruder.design, design, target);
+    const double ratio = ends.at > before.at ? (target - ends.at) / (ends.at - before.at) : 0.0;
+    Ends next = {target, predict(system, before.lower, ends.lower, ratio),
+                 predict(system, before.upper, ends.upper, ratio)};
+    if (!correct(system, spec, next.lower) || !correct(system, spec, next.upper)) { return false; }
+    if (!(next.width() > 0.5 * ends.width())) { return false; }
+    ends = std::move(next);
     return true;
 }
 
@@ -91,12 +137,12 @@ Intruder find_window(const flow::System& system, const Specification& design, co
     const auto by_frequency = [](const auto& a, const auto& b) { return a.point.parameter < b.point.parameter; };
     const auto [lowest, highest] =
         std::minmax_element(branch.boundaries.begin(), branch.boundaries.end(), by_frequency);
-    intruder.lower = end_from(*lowest);
-    intruder.upper = end_from(*highest);
+    intruder.lower = end_from(grazing_beside(branch, *lowest));
+    intruder.upper = end_from(grazing_beside(branch, *highest));
     const auto spans = [&](double omega) {
         return std::any_of(branch.points.begin(), branch.points.end(), [&](const branch::Point& p) {
-            return omega > 1.0 ? p.parameter > intruder.upper.omega * (1.0 + 1e-6)
-                               : p.parameter < intruder.lower.omega * (1.0 - 1e-6);
+            return omega > 1.0 ? p.parameter > intruder.upper.omega * (1.0 + 2e-5)
+                               : p.parameter < intruder.lower.omega * (1.0 - 2e-5);
         });
     };
     if (!(intruder.lower.omega < system.omega() && system.omega() < intruder.upper.omega)) {
@@ -128,44 +174,56 @@ Intruder find_window(const Evaluator& evaluator, const Specification& design, do
     return intruder;
 }
 
+double distance(const Specification& a, const Specification& b) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < a.values.size(); ++i) {
+        const double sum = std::abs(a.values[i]) + std::abs(b.values[i]);
+        if (sum > 0.0) { largest = std::max(largest, 2.0 * std::abs(a.values[i] - b.values[i]) / sum); }
+    }
+    return largest;
+}
+
 WindowAt window_at(const flow::System& system, const Intruder& intruder, const Specification& design,
                    std::span<const Key> keys) {
     WindowAt window;
-    WindowEnd lower = intruder.lower;
-    WindowEnd upper = intruder.upper;
-    const double width_at_first = upper.omega - lower.omega;
-    double done = 0.0;
-    double step = 1.0;
-    while (done < 1.0) {
-        const double target = std::min(1.0, done + step);
-        const Specification spec = between(intruder.design, design, target);
-        WindowEnd next_lower = lower;
-        WindowEnd next_upper = upper;
-        const bool moved = move_end(system, spec, next_lower) && move_end(system, spec, next_upper) &&
-                           next_lower.omega < next_upper.omega;
-        if (moved) {
-            done = target;
-            lower = std::move(next_lower);
-            upper = std::move(next_upper);
+    Ends ends = {0.0, intruder.lower, intruder.upper};
+    Ends before = ends;
+    double step = std::clamp(bold_distance / (distance(intruder.design, design) + 1e-12), first_step, 1.0);
+    while (ends.at < 1.0) {
+        Ends next = ends;
+        if (carry(system, intruder, design, before, next, std::min(1.0, ends.at + step))) {
+            before = std::move(ends);
+            ends = std::move(next);
             step *= 2.0;
             continue;
         }
         step *= 0.5;
         if (step < smallest_step) {
             // Both ends meet where the window closes: then there is nothing left to solve for.
-            const double width = upper.omega - lower.omega;
-            if (width < 0.3 * width_at_first) { window.status = WindowAt::Status::vanished; }
+            if (ends.width() < 0.5 * (intruder.upper.omega - intruder.lower.omega)) {
+                window.status = WindowAt::Status::vanished;
+            }
             return window;
         }
     }
+    const WindowEnd& lower = ends.lower;
+    const WindowEnd& upper = ends.upper;
     const auto exact_lower = solve_end(system, design, lower, keys);
     const auto exact_upper = solve_end(system, design, upper, keys);
     if (!exact_lower.ok() || !exact_upper.ok()) { return window; }
+    if (!(exact_upper.parameter - exact_lower.parameter > 1e-9 * exact_upper.parameter)) {
+        window.status = WindowAt::Status::vanished;  // both ends are the same point
+        return window;
+    }
     window.status = WindowAt::Status::found;
     window.lower = exact_lower.parameter;
     window.upper = exact_upper.parameter;
     window.d_lower = exact_lower.d_parameter;
     window.d_upper = exact_upper.d_parameter;
+    window.carried = intruder;
+    window.carried.design = design;
+    window.carried.lower = lower;
+    window.carried.upper = upper;
     return window;
 }
 

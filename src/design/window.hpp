@@ -40,6 +40,9 @@ Intruder find_window(const flow::System& system, const model::Specification& des
 Intruder find_window(const Evaluator& evaluator, const model::Specification& design, double omega,
                      const std::vector<Attractor>& attractors);
 
+/// Largest relative difference of two designs' values.
+double distance(const model::Specification& a, const model::Specification& b);
+
 /// The window at another design, the ends carried there by continuation (Newton at each of a few steps in the design,
 /// halved on failure).
 struct WindowAt {
@@ -49,6 +52,7 @@ struct WindowAt {
     double upper = 0.0;
     std::vector<double> d_lower;  ///< along each key
     std::vector<double> d_upper;
+    Intruder carried;  ///< the same motion at this design: a nearer place to set out from next time
 };
 WindowAt window_at(const flow::System& system, const Intruder& intruder, const model::Specification& design,
                    std::span<const model::Key> keys);

@@ -141,6 +141,8 @@ std::vector<SettingInfo> make_table() {
                      "starts of the sampled check of uniqueness (single_stable = sampled or refuted)"});
     table.push_back({"uniqueness.cycles", "", "whole number, at least 1", std::to_string(problem.sampling.cycles),
                      "drive cycles that each of them may take to settle"});
+    table.push_back({"uniqueness.margin", "", "at least 0, below 0.5", "drive.margin",
+                     "distance kept from the frequencies at which a motion that refuted a design exists"});
     table.push_back({"optimiser.method", "", alternatives(optimise::methods()), optimiser.method, "optimiser"});
     table.push_back({"optimiser.starts", "", "whole number, at least 1", std::to_string(optimiser.starts),
                      "local solves per layer count"});

@@ -1,6 +1,7 @@
 #include "io/problem_sections.hpp"
 
 #include "io/setting_values.hpp"
+#include "model/units.hpp"
 #include "optimise/solve.hpp"
 
 #include <array>
@@ -25,6 +26,14 @@ void read_sampling(const SettingList& settings, design::Sampling& sampling, Trou
          [&](const Setting& s) { sampling.starts = parse_count(s, 1, 100'000'000); });
     with(settings, "uniqueness.cycles", troubles,
          [&](const Setting& s) { sampling.cycles = parse_count(s, 1, 10'000'000); });
+    with(settings, "uniqueness.margin", troubles, [&](const Setting& s) {
+        double margin = -1.0;
+        try {
+            margin = model::parse_quantity(s.value, "1");
+        } catch (const std::invalid_argument& error) { throw bad_value(s, error.what()); }
+        if (!(margin >= 0.0 && margin < 0.5)) { throw bad_value(s, "must be at least 0 and below 0.5 (50 %)"); }
+        sampling.margin = margin;
+    });
 }
 
 void read_optimiser(const SettingList& settings, study::OptimiserOptions& options, Troubles& troubles) {

@@ -120,13 +120,14 @@ optimise::Evaluation DesignNlp::translate(const design::Evaluation& evaluation, 
         out.constraints[i] = factor * (evaluation.value(limit.quantity) - limit.bound);
         for (int j = 0; with_gradient && j < n; ++j) { out.jacobian(i, j) = factor * gradient_of(limit.quantity, j); }
     }
-    out.ok = add_exclusions(evaluation, x, with_gradient, limits, out);
+    add_exclusions(evaluation, x, with_gradient, limits, out);
+    out.ok = true;
     return out;
 }
 
-bool DesignNlp::add_exclusions(const design::Evaluation& evaluation, const Vector& x, bool with_gradient, int first,
+void DesignNlp::add_exclusions(const design::Evaluation& evaluation, const Vector& x, bool with_gradient, int first,
                                optimise::Evaluation& out) const {
-    if (exclusions_.empty()) { return true; }
+    if (exclusions_.empty()) { return; }
     const model::Specification spec = specification(x);
     std::vector<model::Key> keys;
     if (with_gradient) {
@@ -137,14 +138,12 @@ bool DesignNlp::add_exclusions(const design::Evaluation& evaluation, const Vecto
         const ExclusionValue value =
             study::evaluate(exclusions_[i], evaluator_.system(spec), spec, evaluation.operating_point.omega,
                             evaluation.gradients.omega, keys);
-        if (!value.ok) { return false; }
         out.constraints[row] = value.value;
         for (std::size_t j = 0; j < keys.size(); ++j) {
             const int column = static_cast<int>(j);
             out.jacobian(row, column) = value.gradient[j] * variables_[j].slope(x[column]);
         }
     }
-    return true;
 }
 
 optimise::Evaluation DesignNlp::evaluate(const Vector& x, bool /*want_gradient*/) {

@@ -53,8 +53,8 @@ public:
 
 private:
     [[nodiscard]] const design::Problem& problem() const { return evaluator_.problem(); }
-    /// Constraint values and derivatives of the exclusions from row `first` on; false when one cannot be computed.
-    bool add_exclusions(const design::Evaluation& evaluation, const optimise::Vector& x, bool with_gradient, int first,
+    /// Constraint values and derivatives of the exclusions from row `first` on.
+    void add_exclusions(const design::Evaluation& evaluation, const optimise::Vector& x, bool with_gradient, int first,
                         optimise::Evaluation& out) const;
     void write_row(const model::Specification& spec, const design::Evaluation& evaluation);
 

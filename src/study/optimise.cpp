@@ -146,6 +146,12 @@ private:
         options.solver.stop = stop_;
         options.candidates = problem_.optimiser.samples;
         options.starts = problem_.optimiser.starts;
+        if (!c.exclusions.empty()) {
+            // Half of these problems have no solution, and each evaluation follows a window to its design.
+            options.candidates = std::min(options.candidates, 16);
+            options.starts = 1;
+            options.solver.max_evaluations = std::min(options.solver.max_evaluations, 400);
+        }
         options.certificate_tolerance = problem_.optimiser.tolerance;
         options.warm_starts = warm_starts;
         c.solved = optimise::multi_start(nlp, options);
@@ -300,7 +306,7 @@ private:
             if (stopped()) { break; }
             if (observer_) { observer_(-1.0, below ? "operating below the window" : "operating above the window"); }
             std::vector<Exclusion> exclusions = c.exclusions;
-            exclusions.push_back({intruder, below, design_.margin});
+            exclusions.emplace_back(intruder, below, design_.sampling.margin.value_or(design_.margin));
             IntegerCase moved = solve(c.fixed, {c.x}, exclusions);
             c.evaluations += moved.evaluations;
             if (moved.optimal && (!found || better(moved, best))) {
