@@ -89,6 +89,7 @@ struct Evaluation {
     std::array<double, quantity_count> error_estimates{};  ///< absent likewise
     std::vector<model::Key> gradient_keys;
     Gradients gradients;
+    std::array<std::string, 2> band_reasons;  ///< what ends the band below and above, where it was asked for
     OrbitReport orbit;
     Uniqueness uniqueness;
     double periods = 0.0;  ///< drive cycles integrated

@@ -137,6 +137,8 @@ Intruder find_window(const flow::System& system, const Specification& design, co
     const auto by_frequency = [](const auto& a, const auto& b) { return a.point.parameter < b.point.parameter; };
     const auto [lowest, highest] =
         std::minmax_element(branch.boundaries.begin(), branch.boundaries.end(), by_frequency);
+    intruder.lowest = end_from(*lowest);
+    intruder.highest = end_from(*highest);
     intruder.lower = end_from(grazing_beside(branch, *lowest));
     intruder.upper = end_from(grazing_beside(branch, *highest));
     const auto spans = [&](double omega) {

@@ -28,8 +28,10 @@ struct Intruder {
     std::string trouble;  ///< one sentence unless ok
     int period = 0;
     model::Specification design;
-    WindowEnd lower;
+    WindowEnd lower;  ///< what is followed from design to design: a grazing point beside a fold in place of the fold
     WindowEnd upper;
+    WindowEnd lowest;  ///< the ends themselves
+    WindowEnd highest;
 };
 
 /// orbit: the stable motion met at `system`, whose frequency lies inside the window.

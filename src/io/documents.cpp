@@ -123,6 +123,9 @@ Json evaluation_document(const ProblemFile& problem, std::string_view schema, co
         out["operating_point"].erase("edge_omega");
     }
     out["quantities"] = per_quantity(evaluation.quantities, family);
+    if (!evaluation.band_reasons[0].empty() || !evaluation.band_reasons[1].empty()) {
+        out["band"] = {{"lower", evaluation.band_reasons[0]}, {"upper", evaluation.band_reasons[1]}};
+    }
     out["orbit"] = orbit_of(evaluation.orbit);
     out["uniqueness"] = uniqueness_of(evaluation.uniqueness);
     out["gradients"] = gradients_of(evaluation, family, with_edge);

@@ -3,6 +3,7 @@
 #include "design/scene.hpp"
 #include "optimise/multi_start.hpp"
 #include "optimise/solve.hpp"
+#include "study/evaluate.hpp"
 #include "study/integer_case.hpp"
 
 #include <algorithm>
@@ -173,8 +174,7 @@ private:
     /// Cold evaluation with the tighter integrator, and the certificate of its values.
     void verify(IntegerCase& c, const DesignNlp& nlp) {
         design::Demand demand = nlp.demand(true);
-        const auto all = design::reported_quantities(design_.actuator.family);
-        demand.quantities.assign(all.begin(), all.end());
+        demand.quantities = quantities_to_report(at_tier_one(design_));
         demand.error_estimates = true;
         c.verified = tight_evaluator_.evaluate(nlp.specification(c.x), demand);
         const optimise::Evaluation e = nlp.translate(*c.verified, c.x, true);
