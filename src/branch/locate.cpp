@@ -135,10 +135,11 @@ std::vector<BoundaryPoint> boundaries_between(const flow::Family& family, Piece&
         BoundaryPoint boundary;
         Standing at;
     };
+    const auto behind = [&](const Standing& at) { return (piece.point() - at.u).norm(); };
     std::vector<Found> found;
     for (const Kind kind : {Kind::fold, Kind::flip}) {
         if (!lies_between(kind, a, b)) { continue; }
-        BoundaryPoint boundary = locate(family, piece, kind, a, b, 0.0, size, solves);
+        BoundaryPoint boundary = locate(family, piece, kind, a, b, behind(b), size, solves);
         Standing at{piece.scaled(boundary.point.motion, boundary.point.parameter), 0.0, boundary.point, kind};
         found.push_back({std::move(boundary), std::move(at)});
     }
@@ -150,8 +151,7 @@ std::vector<BoundaryPoint> boundaries_between(const flow::Family& family, Piece&
     for (std::size_t i = 0; i <= found.size(); ++i) {
         const Standing& next = i < found.size() ? found[i].at : b;
         if (lies_between(Kind::torus, *before, next)) {
-            const double behind = (b.u - next.u).norm();
-            all.push_back(locate(family, piece, Kind::torus, *before, next, behind, size, solves));
+            all.push_back(locate(family, piece, Kind::torus, *before, next, behind(next), size, solves));
         }
         if (i < found.size()) { all.push_back(std::move(found[i].boundary)); }
         before = &next;

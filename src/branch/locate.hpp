@@ -22,8 +22,8 @@ struct Standing {
 /// pair has crossed the circle, whatever real multipliers it came from or went to.
 bool lies_between(boundary::Kind kind, const Standing& a, const Standing& b);
 
-/// Boundaries between two points of `piece`, which stands at b, in order. Folds and flips are found first; torus points
-/// between them.
+/// Boundaries between two points of `piece`, which stands at b or beyond, in order. Folds and flips are found first;
+/// torus points between them.
 std::vector<BoundaryPoint> boundaries_between(const flow::Family& family, Piece& piece, const Standing& a,
                                               const Standing& b, double size, long& solves);
 

@@ -274,18 +274,23 @@ private:
                    3.0 * std::abs(b.max_multiplier() - a.max_multiplier()) + 1e-3;
     }
 
-    /// A fold within 1e-6 of a grazing point is one physical jump with it.
+    /// A fold within 1e-6 of a grazing point is one physical jump with it, also where a torus or flip lies in between.
     void pair_jumps() {
         auto& all = branch_.boundaries;
-        for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-            const bool kinds = (all[i].kind == Kind::grazing && all[i + 1].kind == Kind::fold) ||
-                               (all[i].kind == Kind::fold && all[i + 1].kind == Kind::grazing);
-            const double apart = std::abs(all[i].point.parameter - all[i + 1].point.parameter);
-            if (kinds && apart <= 1e-6 * std::abs(all[i].point.parameter)) {
-                all[i].partner = static_cast<int>(i + 1);
-                all[i + 1].partner = static_cast<int>(i);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if ((all[i].kind != Kind::grazing && all[i].kind != Kind::fold) || all[i].partner >= 0) { continue; }
+            const Kind other = all[i].kind == Kind::fold ? Kind::grazing : Kind::fold;
+            for (std::size_t k = i + 1; k < all.size() && near_together(all[i], all[k]); ++k) {
+                if (all[k].kind != other || all[k].partner >= 0) { continue; }
+                all[i].partner = static_cast<int>(k);
+                all[k].partner = static_cast<int>(i);
+                break;
             }
         }
+    }
+
+    [[nodiscard]] static bool near_together(const BoundaryPoint& a, const BoundaryPoint& b) {
+        return std::abs(a.point.parameter - b.point.parameter) <= 1e-6 * std::abs(a.point.parameter);
     }
 
     static constexpr double shortest_step = 1e-4;
