@@ -15,6 +15,9 @@ using Complex = std::complex<double>;
 using ComplexMatrix = Eigen::MatrixXcd;
 using ComplexVector = Eigen::VectorXcd;
 
+/// Of a torus' angle: beneath it the pair of multipliers is no pair.
+constexpr double least_sine = 1e-6;
+
 /// The contact that enters slowest.
 int slowest_contact(const Motion& motion) {
     int slowest = 0;
@@ -196,6 +199,9 @@ CriticalPoint solve_critical(const flow::Family& family, Kind kind, const Motion
         u += step;
         point.residual = f.norm();
         if (length <= 1e-10 * (1.0 + u.norm())) {
+            // Folds and flips solve the equations of a torus as well.
+            const bool of_kind = kind != Kind::torus || std::abs(std::sin(equations.angle(u))) > least_sine;
+            if (!of_kind) { return point; }
             point.status = SolveStatus::converged;
             break;
         }

@@ -142,6 +142,27 @@ std::optional<Motion> old_form_at(const flow::System& system, const Motion& old_
     return orbit::solve(system, motion);
 }
 
+/// The motion of the old form at the grazing point. Where the hybrid flow meets the new contact there, its multipliers
+/// are no longer those of the old form, and the motion a little before stands for it.
+std::optional<Standing> stand_before(const flow::Family& family, Piece& piece, const Vector& found,
+                                     const Motion& old_form, double parameter) {
+    Look here = look(family, old_form, parameter);
+    if (here.status == Look::Status::flow_failed) { return std::nullopt; }
+    if (old_form.form != Form::sequence || here.point.contacts.size() == old_form.contacts()) {
+        return Standing{found, piece.slope(), std::move(here.point)};
+    }
+    const double behind = (piece.point() - found).norm();
+    for (const double more : {1e-6, 1e-5, 1e-4, 1e-3}) {
+        const auto earlier = piece.probe(-(behind + more));
+        if (!earlier) { continue; }
+        Look there = look(family, earlier->motion, earlier->parameter);
+        if (there.ok() && there.point.contacts.size() == old_form.contacts()) {
+            return Standing{piece.scaled(earlier->motion, earlier->parameter), earlier->slope, std::move(there.point)};
+        }
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 int contact_leaving(const Motion& motion) {
@@ -161,9 +182,13 @@ std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, co
     const auto at = static_cast<Eigen::Index>(contact) * piece.motion().sequence.unknowns_per_contact(family.base);
     const double before = last.u[at];
     const double beyond = piece.point()[at];
-    const Vector guess = last.u + before / (before - beyond) * (piece.point() - last.u);
-    const auto grazing = boundary::solve_critical(family, Kind::grazing, piece.motion_of(guess),
-                                                  piece.parameter_of(guess), contact, 0.0, options.size);
+    const Vector between = last.u + before / (before - beyond) * (piece.point() - last.u);
+    Motion guess = piece.motion_of(between);
+    // A stop that cannot pull lets a contact without speed end at a negative time as well: not to be run into.
+    guess.sequence.contacts[static_cast<std::size_t>(contact)].speed = 0.0;
+    guess.sequence.contacts[static_cast<std::size_t>(contact)].duration = 0.0;
+    const auto grazing =
+        boundary::solve_critical(family, Kind::grazing, guess, piece.parameter_of(between), contact, 0.0, options.size);
     if (!grazing.ok()) { return std::nullopt; }
     const Vector found = piece.scaled(grazing.motion, grazing.parameter);
     if (!place_of(found, last.u, piece.point()).between()) { return std::nullopt; }
@@ -208,15 +233,15 @@ std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, co
     if (!old_form) { return std::nullopt; }
     const Vector found = piece.scaled(*old_form, grazing.parameter);
     if (!place_of(found, last.u, piece.point()).between()) { return std::nullopt; }
-    Look before = look(family, *old_form, grazing.parameter);
-    if (before.status == Look::Status::flow_failed) { return std::nullopt; }
+    const auto before = stand_before(family, piece, found, *old_form, grazing.parameter);
+    if (!before) { return std::nullopt; }
     Corner corner;
     corner.at = near->point;
     corner.at.parameter = grazing.parameter;
     corner.at.omega = family.at(grazing.parameter).omega();
     corner.contact = contact;
     corner.uncertainty = 1e-12 * std::abs(grazing.parameter);
-    corner.before = {found, piece.slope(), std::move(before.point)};
+    corner.before = *before;
     corner.onward = {near->point.motion, near->point.parameter, 1.0, {}};
     corner.entering_contact = contact;
     return corner;

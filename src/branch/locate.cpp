@@ -34,6 +34,18 @@ double test_value(const Standing& at, Kind kind) {
     }
 }
 
+/// Multipliers beyond the circle without the one that makes the boundary.
+int unstable_besides(const Standing& at) {
+    if (at.on == Kind::none) { return at.point.unstable_dimension(); }
+    const double critical = at.on == Kind::fold ? 1.0 : -1.0;
+    const auto& all = at.point.map_multipliers;
+    Eigen::Index skipped = 0;
+    (all.array() - critical).abs().minCoeff(&skipped);
+    int count = 0;
+    for (Eigen::Index i = 0; i < all.size(); ++i) { count += i != skipped && std::abs(all[i]) > 1.0 ? 1 : 0; }
+    return count;
+}
+
 }  // namespace
 
 Place place_of(const Vector& u, const Vector& a, const Vector& b) {
@@ -52,27 +64,30 @@ double lowest_speed(const orbit::Motion& motion) {
     return lowest;
 }
 
-std::vector<Kind> boundaries_between(const Standing& a, const Standing& b) {
-    std::vector<Kind> kinds;
-    const bool fold = a.slope * b.slope < 0.0;
-    const bool flip = (a.point.beyond_minus + b.point.beyond_minus) % 2 != 0;
-    if (fold) { kinds.push_back(Kind::fold); }
-    if (flip) { kinds.push_back(Kind::flip); }
-    const int change = b.point.unstable_dimension() - a.point.unstable_dimension();
-    const bool pair_crossed = std::abs(b.point.pairs_beyond - a.point.pairs_beyond) == 1 && std::abs(change) >= 1 &&
-                              (std::abs(change) == 2) == (fold == flip);
-    if (pair_crossed) { kinds.push_back(Kind::torus); }
-    return kinds;
+bool lies_between(Kind kind, const Standing& a, const Standing& b) {
+    switch (kind) {
+        case Kind::fold: return a.slope * b.slope < 0.0;
+        case Kind::flip: return (a.point.beyond_minus + b.point.beyond_minus) % 2 != 0;
+        default: break;
+    }
+    const int change = unstable_besides(b) - unstable_besides(a);
+    if (a.on == Kind::none && b.on == Kind::none) { return std::abs(change) > 1; }
+    // On a fold or flip the multiplier that makes it may count or not.
+    return change < (b.on == Kind::none ? 0 : -1) || change > (a.on == Kind::none ? 0 : 1);
 }
 
+namespace {
+
+/// Refines one boundary by Newton's method on the extended system, from an interpolation of its test function; when the
+/// result does not lie between the two points, the bracket is halved along the piece and tried again. behind: distance
+/// of b back along the piece from where it stands.
 BoundaryPoint locate(const flow::Family& family, Piece& piece, Kind kind, const Standing& a, const Standing& b,
-                     double size, long& solves) {
+                     double behind, double size, long& solves) {
     BoundaryPoint found;
     found.kind = kind;
     found.of_half_cycle = kind == Kind::flip && b.point.motion.mirrored;
     Standing low = a;
     Standing high = b;
-    double behind = 0.0;  // distance of `high` back along the piece
     for (int halving = 0; halving < 12; ++halving) {
         const double f_low = test_value(low, kind);
         const double f_high = test_value(high, kind);
@@ -100,8 +115,7 @@ BoundaryPoint locate(const flow::Family& family, Piece& piece, Kind kind, const 
         Look seen = look(family, middle->motion, middle->parameter);
         if (!seen.ok()) { break; }
         Standing at{piece.scaled(middle->motion, middle->parameter), middle->slope, std::move(seen.point)};
-        const auto kinds = boundaries_between(low, at);
-        if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) {
+        if (lies_between(kind, low, at)) {
             behind += half;
             high = std::move(at);
         } else {
@@ -111,6 +125,38 @@ BoundaryPoint locate(const flow::Family& family, Piece& piece, Kind kind, const 
     found.point = high.point;
     found.uncertainty = std::abs(high.point.parameter - low.point.parameter);
     return found;
+}
+
+}  // namespace
+
+std::vector<BoundaryPoint> boundaries_between(const flow::Family& family, Piece& piece, const Standing& a,
+                                              const Standing& b, double size, long& solves) {
+    struct Found {
+        BoundaryPoint boundary;
+        Standing at;
+    };
+    const auto behind = [&](const Standing& at) { return (piece.point() - at.u).norm(); };
+    std::vector<Found> found;
+    for (const Kind kind : {Kind::fold, Kind::flip}) {
+        if (!lies_between(kind, a, b)) { continue; }
+        BoundaryPoint boundary = locate(family, piece, kind, a, b, behind(b), size, solves);
+        Standing at{piece.scaled(boundary.point.motion, boundary.point.parameter), 0.0, boundary.point, kind};
+        found.push_back({std::move(boundary), std::move(at)});
+    }
+    std::sort(found.begin(), found.end(), [&](const Found& x, const Found& y) {
+        return place_of(x.at.u, a.u, b.u).share < place_of(y.at.u, a.u, b.u).share;
+    });
+    std::vector<BoundaryPoint> all;
+    const Standing* before = &a;
+    for (std::size_t i = 0; i <= found.size(); ++i) {
+        const Standing& next = i < found.size() ? found[i].at : b;
+        if (lies_between(Kind::torus, *before, next)) {
+            all.push_back(locate(family, piece, Kind::torus, *before, next, behind(next), size, solves));
+        }
+        if (i < found.size()) { all.push_back(std::move(found[i].boundary)); }
+        before = &next;
+    }
+    return all;
 }
 
 }  // namespace percuss::branch

@@ -14,16 +14,18 @@ struct Standing {
     numerics::Vector u;
     double slope = 0.0;
     Point point;
+    boundary::Kind on = boundary::Kind::none;  ///< a fold or flip itself, one of whose multipliers is +1 or -1
 };
 
-/// Which boundaries lie between two points: a fold where the slope changes sign, a flip where the number of real
-/// multipliers beyond -1 changes parity, a torus where a pair crosses the circle.
-std::vector<boundary::Kind> boundaries_between(const Standing& a, const Standing& b);
+/// Whether a boundary lies between two points: a fold where the slope changes sign, a flip where the number of real
+/// multipliers beyond -1 changes parity. A torus (no fold or flip in between) where the unstable dimension changes: a
+/// pair has crossed the circle, whatever real multipliers it came from or went to.
+bool lies_between(boundary::Kind kind, const Standing& a, const Standing& b);
 
-/// Refines one of them by Newton's method on the extended system, from an interpolation of its test function; when the
-/// result does not lie between the two points, the bracket is halved along `piece` (which stands at b) and tried again.
-BoundaryPoint locate(const flow::Family& family, Piece& piece, boundary::Kind kind, const Standing& a,
-                     const Standing& b, double size, long& solves);
+/// Boundaries between two points of `piece`, which stands at b or beyond, in order. Folds and flips are found first;
+/// torus points between them.
+std::vector<BoundaryPoint> boundaries_between(const flow::Family& family, Piece& piece, const Standing& a,
+                                              const Standing& b, double size, long& solves);
 
 /// Where a point lies between two others: share of the way, distance from the straight line in units of its length.
 struct Place {

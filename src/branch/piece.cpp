@@ -14,7 +14,7 @@ Piece::Piece(const flow::Family& family, Motion like, double size, const StepOpt
                .largest_step = options.largest_step,
                .largest_parameter_step = options.largest_parameter_step,
                .target_angle = options.target_angle,
-               .tolerance = 1e-9,
+               .tolerance = 1e-7,
                .step_tolerance = 1e-7}) {
     const int n = like_.unknowns(family.base);
     units_.resize(n + 1);

@@ -106,8 +106,8 @@ private:
     }
 
     void note_boundaries(const Standing& a, const Standing& b) {
-        for (Kind kind : boundaries_between(a, b)) {
-            record(locate(family_, *piece_, kind, a, b, options_.size, branch_.solves));
+        for (BoundaryPoint& found : boundaries_between(family_, *piece_, a, b, options_.size, branch_.solves)) {
+            record(std::move(found));
         }
     }
 
@@ -151,6 +151,8 @@ private:
 
     /// Goes on behind a grazing point with the other form.
     void pass(const Corner& corner) {
+        const bool leaving = corner.entering_contact < 0;
+        if (leaving && corner.near.slope * corner.onward.direction < 0.0) { record_turn(corner, corner.near.point); }
         branch_.points.push_back(corner.at);
         BoundaryPoint found;
         found.kind = Kind::grazing;
@@ -164,11 +166,21 @@ private:
         }
         piece_ = std::make_unique<Piece>(family_, corner.onward.motion, options_.size, options_.steps);
         const bool started =
-            corner.entering_contact >= 0
-                ? piece_->start_with_speed(corner.onward.motion, corner.onward.parameter, corner.entering_contact)
-                : piece_->start(corner.onward.motion, corner.onward.parameter, corner.onward.direction);
+            leaving ? piece_->start(corner.onward.motion, corner.onward.parameter, corner.onward.direction)
+                    : piece_->start_with_speed(corner.onward.motion, corner.onward.parameter, corner.entering_contact);
         if (!started || !stand_here()) { return lose("the motion behind a grazing point could not be found"); }
+        if (!leaving && corner.before.slope * last_.slope < 0.0) { record_turn(corner, last_.point); }
         strobed_points_ = 0;
+    }
+
+    /// The branch turns back at the grazing point itself: its fold stands at an even smaller entry speed than where the
+    /// striking motion was looked at.
+    void record_turn(const Corner& corner, const Point& striking) {
+        BoundaryPoint fold;
+        fold.kind = Kind::fold;
+        fold.point = striking;
+        fold.uncertainty = corner.uncertainty + std::abs(striking.parameter - corner.at.parameter);
+        record(std::move(fold));
     }
 
     // ---- trouble
@@ -262,18 +274,23 @@ private:
                    3.0 * std::abs(b.max_multiplier() - a.max_multiplier()) + 1e-3;
     }
 
-    /// A fold within 1e-6 of a grazing point is one physical jump with it.
+    /// A fold within 1e-6 of a grazing point is one physical jump with it, also where a torus or flip lies in between.
     void pair_jumps() {
         auto& all = branch_.boundaries;
-        for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-            const bool kinds = (all[i].kind == Kind::grazing && all[i + 1].kind == Kind::fold) ||
-                               (all[i].kind == Kind::fold && all[i + 1].kind == Kind::grazing);
-            const double apart = std::abs(all[i].point.parameter - all[i + 1].point.parameter);
-            if (kinds && apart <= 1e-6 * std::abs(all[i].point.parameter)) {
-                all[i].partner = static_cast<int>(i + 1);
-                all[i + 1].partner = static_cast<int>(i);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if ((all[i].kind != Kind::grazing && all[i].kind != Kind::fold) || all[i].partner >= 0) { continue; }
+            const Kind other = all[i].kind == Kind::fold ? Kind::grazing : Kind::fold;
+            for (std::size_t k = i + 1; k < all.size() && near_together(all[i], all[k]); ++k) {
+                if (all[k].kind != other || all[k].partner >= 0) { continue; }
+                all[i].partner = static_cast<int>(k);
+                all[k].partner = static_cast<int>(i);
+                break;
             }
         }
+    }
+
+    [[nodiscard]] static bool near_together(const BoundaryPoint& a, const BoundaryPoint& b) {
+        return std::abs(a.point.parameter - b.point.parameter) <= 1e-6 * std::abs(a.point.parameter);
     }
 
     static constexpr double shortest_step = 1e-4;

@@ -46,7 +46,7 @@ bool ArclengthWalker::start_along(const Vector& u, const Vector& direction) {
         const Vector du = bordered(jacobian_, along).partialPivLu().solve(right);
         if (!du.allFinite()) { return false; }
         const double scale = 1.0 + u_.norm();
-        if (f_.norm() <= options_.tolerance * scale && du.norm() <= 1e-6 * scale) {
+        if (f_.norm() <= options_.tolerance * scale && du.norm() <= 1e-9 * scale) {
             step_ = options_.first_step;
             has_previous_ = false;
             return solve_tangent(along);
@@ -84,6 +84,20 @@ void ArclengthWalker::predict() {
     const double along = std::abs(tangent_[tangent_.size() - 1]);
     if (step_ * along > options_.largest_parameter_step) { step_ = options_.largest_parameter_step / along; }
     predicted_ = u_ + step_ * tangent_;
+    if (has_previous_) { predicted_ += bend(); }
+}
+
+Vector ArclengthWalker::bend() const {
+    const Vector chord = u_ - previous_u_;
+    const double s = chord.norm();
+    const Vector by_points = (s * tangent_ - chord) / (s * s);
+    const Vector by_tangents = (tangent_ - previous_tangent_) / s;
+    const Vector second = 3.0 * by_points - by_tangents;
+    const Vector third = (2.0 * by_points - by_tangents) / s;
+    Vector bent = step_ * step_ * (second + step_ * third);
+    bent -= tangent_.dot(bent) * tangent_;
+    const double furthest = options_.largest_angle * step_;
+    return bent.norm() <= furthest ? bent : Vector::Zero(u_.size());
 }
 
 ArclengthWalker::Correction ArclengthWalker::correct() {

@@ -61,6 +61,9 @@ private:
     enum class Correction : std::uint8_t { converged, rejected };
     [[nodiscard]] bool can_continue() const { return step_ >= options_.smallest_step; }
     void predict();
+    /// What the cubic through the last two points with their tangents departs from the tangent at the end of the step,
+    /// at right angles to it; nothing where that is too much to trust.
+    [[nodiscard]] Vector bend() const;
     Correction correct();
     void adapt(double angle);
     bool solve_tangent(const Vector& orientation);
