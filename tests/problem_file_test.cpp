@@ -225,7 +225,6 @@ TEST_CASE("what is wrong is refused with a hint") {
         {nondimensional + "[design]\nvariable = nondimensional.g in 0 .. nan\n", {"nan"}},
         {nondimensional + "[design]\nmaximise = peak_farce\n", {"peak_farce", "nearest one is peak_force"}},
         {nondimensional + "[design]\nmaximise = electric_field\n", {"electric_field", "SI"}},
-        {nondimensional + "[design]\nmaximise = band_upper\n", {"band_upper", "not available"}},
         {nondimensional + "[design]\nmaximise = contacts\n", {"contacts", "whole number"}},
         {nondimensional + "[design]\nlimit = amplitude < 3\n", {"amplitude < 3", "QUANTITY <= VALUE"}},
         {nondimensional + "[design]\nlimit = amplitud <= 3\n", {"nearest one is amplitude"}},

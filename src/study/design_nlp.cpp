@@ -121,7 +121,9 @@ optimise::Evaluation DesignNlp::translate(const design::Evaluation& evaluation, 
         for (int j = 0; with_gradient && j < n; ++j) { out.jacobian(i, j) = factor * gradient_of(limit.quantity, j); }
     }
     add_exclusions(evaluation, x, with_gradient, limits, out);
-    out.ok = true;
+    // An end of the band that was not found, or only bracketed, has no value or no gradient.
+    out.ok = std::isfinite(out.objective) && out.constraints.allFinite() &&
+             (!with_gradient || (out.gradient.allFinite() && out.jacobian.allFinite()));
     return out;
 }
 
