@@ -163,6 +163,17 @@ std::optional<Standing> stand_before(const flow::Family& family, Piece& piece, c
     return std::nullopt;
 }
 
+/// The corner's own point: the motion beside it, at the grazing point's parameter.
+Corner corner_at(const flow::Family& family, const Point& near, double parameter, int contact) {
+    Corner corner;
+    corner.at = near;
+    corner.at.parameter = parameter;
+    corner.at.omega = family.at(parameter).omega();
+    corner.contact = contact;
+    corner.uncertainty = 1e-12 * std::abs(parameter);
+    return corner;
+}
+
 }  // namespace
 
 int contact_leaving(const Motion& motion) {
@@ -195,12 +206,7 @@ std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, co
     auto near = stand_near(family, grazing.motion, grazing.parameter, contact, options);
     if (!near) { return std::nullopt; }
     near->slope = -near->slope;  // travelled towards lower speed
-    Corner corner;
-    corner.at = near->point;
-    corner.at.parameter = grazing.parameter;
-    corner.at.omega = family.at(grazing.parameter).omega();
-    corner.contact = contact;
-    corner.uncertainty = 1e-12 * std::abs(grazing.parameter);
+    Corner corner = corner_at(family, near->point, grazing.parameter, contact);
     const flow::System system = family.at(grazing.parameter);
     Motion rest = without(system, grazing.motion, contact, near->point);
     const auto solved = orbit::solve(system, rest);
@@ -235,12 +241,7 @@ std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, co
     if (!place_of(found, last.u, piece.point()).between()) { return std::nullopt; }
     const auto before = stand_before(family, piece, found, *old_form, grazing.parameter);
     if (!before) { return std::nullopt; }
-    Corner corner;
-    corner.at = near->point;
-    corner.at.parameter = grazing.parameter;
-    corner.at.omega = family.at(grazing.parameter).omega();
-    corner.contact = contact;
-    corner.uncertainty = 1e-12 * std::abs(grazing.parameter);
+    Corner corner = corner_at(family, near->point, grazing.parameter, contact);
     corner.before = *before;
     corner.onward = {near->point.motion, near->point.parameter, 1.0, {}};
     corner.entering_contact = contact;

@@ -60,4 +60,81 @@ std::string describe_infeasible(const design::Problem& problem, const optimise::
     return "no design was found that meets the limit " + names;
 }
 
+namespace {
+
+struct Report {
+    const design::Problem& problem;
+    const design::Evaluator& evaluator;
+    const IntegerCase& best;
+    double scale;  ///< of the objective
+    const DesignNlp nlp{evaluator, best.fixed, scale, nullptr};
+    std::vector<LimitReport> limits{};
+};
+
+void add_limits(Report& r) {
+    for (std::size_t i = 0; i < r.problem.limits.size(); ++i) {
+        const design::Limit& limit = r.problem.limits[i];
+        LimitReport report;
+        report.name = design::quantity_info(limit.quantity).name;
+        report.text = limit.text;
+        report.value = r.best.verified->value(limit.quantity);
+        report.limit = limit.bound;
+        report.upper = limit.upper;
+        const double multiplier = r.best.certificate.multipliers[static_cast<int>(i)];
+        report.active = std::abs(report.value - limit.bound) <= activity * r.nlp.limit_scale(i);
+        report.multiplier = multiplier * r.scale / r.nlp.limit_scale(i);
+        r.limits.push_back(report);
+    }
+}
+
+void add_windows(Report& r) {
+    const model::Specification spec = r.nlp.specification(r.best.x);
+    for (std::size_t i = 0; i < r.best.exclusions.size(); ++i) {
+        const Exclusion& e = r.best.exclusions[i];
+        const design::WindowAt window = design::window_at(r.evaluator.system(spec), *e.intruder, spec, {});
+        if (window.status != design::WindowAt::Status::found) { continue; }
+        LimitReport report;
+        report.name = "omega";
+        report.upper = e.below;
+        report.limit = e.below ? (1.0 - e.margin) * window.lower : (1.0 + e.margin) * window.upper;
+        report.value = r.best.verified->operating_point.omega;
+        report.text = std::string(e.below ? "omega below" : "omega above") + " the window of the motion of period " +
+                      std::to_string(e.intruder->period);
+        report.active = std::abs(report.value / report.limit - 1.0) <= activity;
+        report.multiplier =
+            r.best.certificate.multipliers[static_cast<int>(r.problem.limits.size() + i)] * r.scale / report.limit;
+        r.limits.push_back(report);
+    }
+}
+
+void add_active_bounds(Report& r) {
+    const auto& variables = r.nlp.continuous();
+    for (std::size_t j = 0; j < variables.size(); ++j) {
+        const double unit = r.best.x[static_cast<int>(j)];
+        const bool at_upper = unit >= 1.0 - activity;
+        if (!at_upper && unit > activity) { continue; }
+        LimitReport report;
+        report.name = model::key_info(variables[j].key).name;
+        report.upper = at_upper;
+        report.limit = at_upper ? variables[j].upper : variables[j].lower;
+        report.value = variables[j].value(unit);
+        report.text = report.name + (at_upper ? " at its upper bound" : " at its lower bound");
+        report.active = true;
+        const double scaled = std::abs(r.best.certificate.bound_multipliers[static_cast<int>(j)]);
+        report.multiplier = scaled * r.scale / variables[j].slope(unit);
+        r.limits.push_back(report);
+    }
+}
+
+}  // namespace
+
+std::vector<LimitReport> report_limits(const design::Problem& problem, const design::Evaluator& evaluator,
+                                       const IntegerCase& best, double objective_scale) {
+    Report report{problem, evaluator, best, objective_scale};
+    add_limits(report);
+    add_windows(report);
+    add_active_bounds(report);
+    return std::move(report.limits);
+}
+
 }  // namespace percuss::study

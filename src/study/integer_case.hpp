@@ -26,6 +26,14 @@ struct IntegerCase {
     bool looked_at = false;  ///< by starts (tiers 2 and 3)
 };
 
+/// A limit within this relative distance of its bound is active.
+inline constexpr double activity = 1e-6;
+
+/// The limits of the problem at a solved case, the windows of motions that it must avoid as limits on omega, and the
+/// bounds of design variables that it presses on; multipliers in the objective's unit per unit of the limit.
+std::vector<LimitReport> report_limits(const design::Problem& problem, const design::Evaluator& evaluator,
+                                       const IntegerCase& best, double objective_scale);
+
 /// All combinations of the integer variables, in order.
 std::vector<model::Specification> enumerate_integers(const design::Problem& problem);
 

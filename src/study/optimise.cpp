@@ -21,8 +21,6 @@ using optimise::Vector;
 
 /// The claimed optimum is evaluated once more with the integrator this much tighter.
 constexpr double verification_factor = 1e-2;
-/// A limit within this relative distance of its bound is active.
-constexpr double activity = 1e-6;
 
 void check(const StudyProblem& problem) {
     const design::Problem& d = problem.design;
@@ -371,65 +369,7 @@ private:
         const Quantity objective = design_.objectives.front().quantity;
         result.objective_error = best.verified->error_estimates[static_cast<std::size_t>(objective)];
         result.design = best.report.design;
-        const DesignNlp nlp(evaluator_, best.fixed, scale_, nullptr);
-        for (std::size_t i = 0; i < design_.limits.size(); ++i) {
-            const design::Limit& limit = design_.limits[i];
-            LimitReport report;
-            report.name = design::quantity_info(limit.quantity).name;
-            report.text = limit.text;
-            report.value = best.verified->value(limit.quantity);
-            report.limit = limit.bound;
-            report.upper = limit.upper;
-            const double multiplier = best.certificate.multipliers[static_cast<int>(i)];
-            report.active = std::abs(report.value - limit.bound) <= activity * nlp.limit_scale(i);
-            report.multiplier = multiplier * scale_ / nlp.limit_scale(i);
-            result.limits.push_back(report);
-        }
-        add_exclusions(result, best);
-        add_active_bounds(result, best, nlp);
-    }
-
-    /// Windows of motions that must be avoided, as limits on omega.
-    void add_exclusions(OptimiseStudyResult& result, const IntegerCase& best) const {
-        for (std::size_t i = 0; i < best.exclusions.size(); ++i) {
-            const Exclusion& e = best.exclusions[i];
-            const DesignNlp nlp(evaluator_, best.fixed, scale_, nullptr);
-            const model::Specification spec = nlp.specification(best.x);
-            const design::WindowAt window = design::window_at(evaluator_.system(spec), *e.intruder, spec, {});
-            if (window.status != design::WindowAt::Status::found) { continue; }
-            LimitReport report;
-            report.name = "omega";
-            report.upper = e.below;
-            report.limit = e.below ? (1.0 - e.margin) * window.lower : (1.0 + e.margin) * window.upper;
-            report.value = best.verified->operating_point.omega;
-            report.text = std::string(e.below ? "omega below" : "omega above") +
-                          " the window of the motion of period " + std::to_string(e.intruder->period);
-            report.active = std::abs(report.value / report.limit - 1.0) <= activity;
-            const double multiplier = best.certificate.multipliers[static_cast<int>(design_.limits.size() + i)];
-            report.multiplier = multiplier * scale_ / report.limit;
-            result.limits.push_back(report);
-        }
-    }
-
-    /// Bounds of design variables that the optimum presses on.
-    void add_active_bounds(OptimiseStudyResult& result, const IntegerCase& best, const DesignNlp& nlp) const {
-        const auto& variables = nlp.continuous();
-        for (std::size_t j = 0; j < variables.size(); ++j) {
-            const double unit = best.x[static_cast<int>(j)];
-            const bool at_upper = unit >= 1.0 - activity;
-            if (!at_upper && unit > activity) { continue; }
-            const model::KeyInfo& info = model::key_info(variables[j].key);
-            LimitReport report;
-            report.name = info.name;
-            report.upper = at_upper;
-            report.limit = at_upper ? variables[j].upper : variables[j].lower;
-            report.value = variables[j].value(unit);
-            report.text = report.name + (at_upper ? " at its upper bound" : " at its lower bound");
-            report.active = true;
-            const double scaled = std::abs(best.certificate.bound_multipliers[static_cast<int>(j)]);
-            report.multiplier = scaled * scale_ / variables[j].slope(unit);
-            result.limits.push_back(report);
-        }
+        result.limits = report_limits(design_, evaluator_, best, scale_);
     }
 
     const StudyProblem& problem_;
