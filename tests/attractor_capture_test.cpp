@@ -148,6 +148,32 @@ TEST_CASE("a watch wants agreement for a whole period, and forgets what leaves")
     for (int i = 30; i > 0; --i) { CHECK_FALSE(backwards.see(trap.points()[at(i % 3)], traps).has_value()); }
 }
 
+TEST_CASE("orbits found in different places are told apart and put together") {
+    const auto integrator = test::membranes();
+    const flow::System system = system_at(*integrator, 1.78);
+    const attractor::Systems systems{system, system};
+    const auto known = [&](flow::State state, int period, int later) {
+        for (int i = 0; i < later; ++i) { state = one_cycle(system, state); }
+        const auto orbit = attractor::stable_orbit(system, state, period);
+        REQUIRE(orbit.has_value());
+        return attractor::make_known(systems, *orbit, scale);
+    };
+    const flow::State one = {0.2943, -0.0392, 1.1815, 1.1923};
+    const flow::State three = test::reference_orbits[5].state;
+    const flow::State four = {0.3083, 0.0527, 1.1802, 1.1938};
+    attractor::KnownOrbits all = {known(one, 1, 0)};
+    CHECK(attractor::merge_into(all, {known(four, 4, 0), known(three, 3, 0)}) == std::vector<int>{1, 2});
+    REQUIRE(all.size() == 3);
+    CHECK(attractor::merge_into(all, {known(three, 3, 2), known(one, 1, 1), known(four, 4, 3)}) ==
+          std::vector<int>{2, 0, 1});
+    CHECK(attractor::merge_into(all, {known(three, 6, 1), known(one, 4, 0)}) == std::vector<int>{2, 0});  // multiples
+    CHECK(all.size() == 3);
+    CHECK(all[1]->orbit.map.period == 4);
+    CHECK(all[2]->orbit.map.period == 3);
+    // The same motion begins at the same strobe point, wherever it was met.
+    CHECK(test::distance(known(three, 3, 1)->trap.points()[0], known(three, 3, 2)->trap.points()[0], 4) < 1e-9);
+}
+
 TEST_CASE("the exponent of a periodic orbit is the logarithm of its multiplier") {
     const auto integrator = test::membranes();
     const struct {

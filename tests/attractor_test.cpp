@@ -144,6 +144,9 @@ TEST_CASE("starts are uniform, independent, and a function of seed and number al
     for (const double covariance : {across, along, seeds}) {
         CHECK(std::abs(covariance) < 4.0 / (12.0 * std::sqrt(count)));
     }
+    // Seeds are no shifted copies of one another, not even by the constant that the generator counts with.
+    const std::uint64_t shifted = 1 + 0x9e3779b97f4a7c15U;
+    CHECK(attractor::start_state(cube, 4, shifted, 0)[0] != attractor::start_state(cube, 4, 1, 0)[1]);
     CHECK(attractor::start_state(cube, 4, 7, 123) == attractor::start_state(cube, 4, 7, 123));
     // The first entries do not depend on how many there are; an interval of no length is a constant.
     const Box flat{{0.0, 3.0, 0.0, 0.0}, {1.0, 3.0, 1.0, 1.0}};

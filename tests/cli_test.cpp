@@ -51,7 +51,7 @@ TEST_CASE("wrong usage is told in one line") {
     } cases[] = {
         {{}, "verb"},
         {{"evalute", duffing}, "nearest one is evaluate"},
-        {{"branch", duffing}, "not available in this version"},
+        {{"explore", duffing}, "not available in this version"},
         {{"pareto", duffing}, "not available in this version"},
         {{"evaluate"}, "needs a problem file"},
         {{"evaluate", duffing, "another"}, "another"},

@@ -116,10 +116,6 @@ TEST_CASE("one per cent below the edge the defaults are alone, by tier 1") {
     CHECK(off.status == EvaluationStatus::ok);
     CHECK(off.uniqueness.verdict == Verdict::not_checked);
     CHECK(off.value(Quantity::peak_force) == test::relative(e.value(Quantity::peak_force), 1e-12));
-    // A sampled check is not there yet and not claimed.
-    design::Problem sampled = nondimensional();
-    sampled.single_stable = design::SingleStable::sampled;
-    CHECK(evaluate(sampled).uniqueness.verdict != Verdict::unique);
 }
 
 TEST_CASE("the same actuator in SI units is the nondimensional one times its scales") {

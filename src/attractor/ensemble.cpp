@@ -4,7 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -119,16 +119,10 @@ struct CountedSystems {
 
 /// Numbers of a block's orbits (those known before it, then those found) in the list of all.
 std::vector<int> put_together(const BlockResult& block, std::size_t known_before, KnownOrbits& all) {
-    std::vector<int> numbers;
-    for (std::size_t i = 0; i < known_before; ++i) { numbers.push_back(static_cast<int>(i)); }
-    for (const auto& orbit : block.found) {
-        auto number = find_known(all, *orbit);
-        if (!number) {
-            number = static_cast<int>(all.size());
-            all.push_back(orbit);
-        }
-        numbers.push_back(*number);
-    }
+    std::vector<int> numbers(known_before);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    const std::vector<int> found = merge_into(all, block.found);
+    numbers.insert(numbers.end(), found.begin(), found.end());
     return numbers;
 }
 
@@ -152,7 +146,7 @@ Ensemble find_motions(const Systems& systems, const Box& box, const EnsembleOpti
     ensemble.box = box;
 
     KnownOrbits known;
-    for (const orbit::Orbit& orbit : given) { known.push_back(make_known(counted.systems, orbit, scale)); }
+    for (const orbit::Orbit& orbit : given) { merge_into(known, {make_known(counted.systems, orbit, scale)}); }
     const std::size_t given_count = known.size();
     Blocks blocks(systems, box, options, false);
     std::vector<BlockResult> results(index(blocks.count()));

@@ -61,6 +61,19 @@ std::optional<int> find_known(const KnownOrbits& known, const KnownOrbit& orbit)
     return found == known.end() ? std::nullopt : std::optional<int>(static_cast<int>(found - known.begin()));
 }
 
+std::vector<int> merge_into(KnownOrbits& known, const KnownOrbits& more) {
+    std::vector<int> numbers;
+    for (const auto& orbit : more) {
+        auto number = find_known(known, *orbit);
+        if (!number) {
+            number = static_cast<int>(known.size());
+            known.push_back(orbit);
+        }
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
 bool is_news(const KnownOrbits& known, const Recurrence& recurrence, const flow::State& z) {
     return std::all_of(known.begin(), known.end(), [&](const auto& orbit) {
         const double lag = std::max(1.0 - orbit->trap.max_multiplier(), 1e-6);

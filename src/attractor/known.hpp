@@ -39,6 +39,9 @@ bool same_orbit(const KnownOrbit& a, const KnownOrbit& b);
 /// Number of the known orbit that is the same motion, or nothing.
 std::optional<int> find_known(const KnownOrbits& known, const KnownOrbit& orbit);
 
+/// Adds the orbits that are not known yet; returns the number of each in the list.
+std::vector<int> merge_into(KnownOrbits& known, const KnownOrbits& more);
+
 /// How nearly a motion recurs: the last strobed states of a history compared with those n cycles before.
 struct Recurrence {
     int period = 0;         ///< 0: the history is too short

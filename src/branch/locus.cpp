@@ -129,7 +129,8 @@ private:
         for (double value : passed) { add_at(a, b, value); }
     }
 
-    /// The boundary at a value between two points, solved for in the frequency.
+    /// The boundary at a value between two points, solved for in the frequency; left out where the solution is not
+    /// between them: near a turn the curve has two points at that value.
     void add_at(const Vector& a, const Vector& b, double value) {
         const double va = equations_.parameters(a)[1];
         const double vb = equations_.parameters(b)[1];
@@ -149,7 +150,11 @@ private:
         const auto exact = boundary::solve_critical(by_omega, start_.kind, equations_.motion(guess), omega,
                                                     start_.contact, equations_.angle(guess), options_.size);
         ++locus_.solves;
-        if (!exact.ok() || std::abs(exact.parameter - omega) > 0.05 * omega) { return; }
+        if (!exact.ok()) { return; }
+        const Vector chord = b - a;
+        const Vector along = equations_.pack(exact.motion, exact.angle, std::array<double, 2>{exact.parameter, value});
+        const double share = (along - a).dot(chord) / chord.squaredNorm();
+        if (!(share >= 0.0 && share <= 1.0)) { return; }
         add_point(exact.motion, exact.parameter, value, exact.angle);
     }
 

@@ -1,7 +1,9 @@
 #include "design/evaluate.hpp"
 
+#include "design/band.hpp"
 #include "design/measure.hpp"
 #include "design/operating_point.hpp"
+#include "design/sampled_check.hpp"
 #include "design/scene.hpp"
 #include "design/uniqueness.hpp"
 
@@ -153,6 +155,7 @@ private:
         if (problem_.single_stable != SingleStable::off && has_stop && result_.status == EvaluationStatus::ok) {
             judge(free_orbits_from_above(system_, scout_, omega), nullptr);
         }
+        if (has_stop && wants_band() && result_.status == EvaluationStatus::ok) { measure_band_around(omega); }
     }
 
     void operate_below_edge() {
@@ -200,6 +203,7 @@ private:
         if (options.check_neighbours && result_.status == EvaluationStatus::ok) {
             judge(operation.free_orbits, operation.fold ? &*operation.fold : nullptr);
         }
+        measure_band(edge.boundary.omega);
     }
 
     void set_fold_offset(const boundary::GrazingFold& fold) {
@@ -268,9 +272,70 @@ private:
             result_.status = EvaluationStatus::not_unique;
             result_.reason = std::move(tier_one.rejection);
         }
-        // The sampled tiers are not in this version: what was asked for has then not been checked.
-        if (problem_.single_stable > SingleStable::orbit && result_.uniqueness.verdict == Verdict::unique) {
-            result_.uniqueness.verdict = Verdict::not_checked;
+        if (problem_.single_stable > SingleStable::orbit && result_.uniqueness.verdict != Verdict::not_unique) {
+            judge_by_starts();
+        }
+    }
+
+    void judge_by_starts() {
+        const orbit::Image image =
+            orbit::apply(system_, orbit_.map, orbit_.state, orbit::Differentiate::nothing, {}, flow::observe_extrema);
+        const double amplitude = 0.5 * (image.observed[orbit::x_max].value - image.observed[orbit::x_min].value);
+        const flow::System scout = scout_.at_omega(system_.omega());
+        TierTwo tier_two = check_tier_two({system_, scout, scaled_.scales, orbit_, amplitude, problem_.sampling});
+        tier_two.uniqueness.checked += "; " + result_.uniqueness.checked;
+        result_.uniqueness = std::move(tier_two.uniqueness);
+        if (!tier_two.rejection.empty()) {
+            result_.status = EvaluationStatus::not_unique;
+            result_.reason = std::move(tier_two.rejection);
+        }
+    }
+
+    /// With a given frequency the edge is not known yet.
+    void measure_band_around(double omega) {
+        boundary::FreeBranch branch(scout_);
+        std::vector<flow::ParameterVector> directions;
+        for (const KeyDirection& key : keys_) { directions.push_back(key.parameters); }
+        const boundary::Edge edge = boundary::find_edge(branch, system_.at_omega(omega), {}, directions);
+        const bool found = edge.status == boundary::EdgeStatus::found;
+        result_.gradients.edge_omega = edge.boundary.d_omega;
+        measure_band(found ? edge.boundary.omega : absent);
+        result_.gradients.edge_omega.clear();
+    }
+
+    [[nodiscard]] bool wants_band() const {
+        return std::any_of(demand_.quantities.begin(), demand_.quantities.end(),
+                           [](Quantity q) { return q == Quantity::band_lower || q == Quantity::band_upper; });
+    }
+
+    void measure_band(double edge_omega) {
+        if (result_.status != EvaluationStatus::ok || orbit_.contacts.empty() || !wants_band()) { return; }
+        std::vector<flow::ParameterVector> directions;
+        for (const KeyDirection& key : keys_) {
+            directions.push_back(key.parameters);
+            directions.back()[index(system_.integrator->info().omega)] = 0.0;
+        }
+        const flow::System scout = scout_.at_omega(system_.omega());
+        const bool sample = problem_.single_stable > SingleStable::orbit;
+        const Band band = single_stable_band({system_, scout, orbit_, edge_omega, result_.gradients.edge_omega,
+                                              directions, sample ? &problem_.sampling : nullptr},
+                                             actuator_);
+        report_end(Quantity::band_lower, band.lower);
+        report_end(Quantity::band_upper, band.upper);
+        result_.band_reasons = {band.lower.reason, band.upper.reason};
+    }
+
+    void report_end(Quantity q, const BandEnd& end) {
+        if (!end.found) { return; }
+        const auto at = static_cast<std::size_t>(q);
+        const double per_omega = 1.0 / (2.0 * pi * scaled_.scales.time);
+        result_.quantities[at] = end.omega * per_omega;
+        if (demand_.error_estimates) { result_.error_estimates[at] = end.error * per_omega; }
+        auto& gradient = result_.gradients.quantity[at];
+        gradient.clear();
+        for (std::size_t i = 0; i < keys_.size(); ++i) {
+            const double d = i < end.d_omega.size() ? end.d_omega[i] : absent;
+            gradient.push_back(per_omega * (d - end.omega * keys_[i].scales.time / scaled_.scales.time));
         }
     }
 
@@ -299,6 +364,10 @@ Evaluator::Evaluator(Evaluator&&) noexcept = default;
 Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 const Problem& Evaluator::problem() const { return implementation_->problem; }
+
+flow::System Evaluator::system(const Specification& actuator) const {
+    return {implementation_->scene.own.get(), model::scale(actuator).parameters, nullptr};
+}
 
 Evaluation Evaluator::evaluate(const Specification& actuator, const Demand& demand) const {
     model::validate(actuator);

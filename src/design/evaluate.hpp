@@ -3,6 +3,7 @@
 /// One design evaluated: operating point, orbit, quantities with exact gradients, uniqueness.
 
 #include "design/evaluation.hpp"
+#include "flow/flow.hpp"
 
 #include <functional>
 #include <memory>
@@ -21,6 +22,10 @@ public:
     Evaluator& operator=(Evaluator&&) noexcept;
 
     [[nodiscard]] const Problem& problem() const;
+
+    /// The nondimensional system of a specification, with the problem's integrator; its omega is the specification's, 0
+    /// without one. Lives as long as the evaluator.
+    [[nodiscard]] flow::System system(const model::Specification& actuator) const;
 
     /// The design of the problem with some keys replaced. drive.frequency absent: operate at the edge.
     [[nodiscard]] Evaluation evaluate(const model::Specification& actuator, const Demand& demand) const;

@@ -48,7 +48,8 @@ struct OrbitReport {
 
 /// A motion other than the tuned one, found by the uniqueness check.
 struct Attractor {
-    int period = 0;
+    int period = 0;                      ///< drive cycles, 0 for aperiodic motions
+    std::string_view kind = "periodic";  ///< periodic | chaotic | quasi-periodic | undecided
     std::vector<double> state;
     double peak_force = absent;
     double amplitude = absent;
@@ -88,6 +89,7 @@ struct Evaluation {
     std::array<double, quantity_count> error_estimates{};  ///< absent likewise
     std::vector<model::Key> gradient_keys;
     Gradients gradients;
+    std::array<std::string, 2> band_reasons;  ///< what ends the band below and above, where it was asked for
     OrbitReport orbit;
     Uniqueness uniqueness;
     double periods = 0.0;  ///< drive cycles integrated

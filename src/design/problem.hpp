@@ -6,6 +6,7 @@
 #include "model/specification.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,16 @@ struct SolverOptions {
     std::string instruction_set = "auto";  ///< auto | v2 | v3 | v4 | generic
 };
 
+/// Starts of the sampled uniqueness check (tier 2).
+struct Sampling {
+    long starts = 512;
+    std::uint64_t seed = 1;
+    int jobs = 1;       ///< threads; results do not depend on it
+    int cycles = 1000;  ///< budget of each start, drive cycles
+    /// Distance kept from the window of a motion that refuted a design, relative; absent: as from the edge.
+    std::optional<double> margin;
+};
+
 struct Problem {
     model::Specification actuator;
     double margin = 0.01;  ///< operate at (1 - margin) times the edge
@@ -49,6 +60,7 @@ struct Problem {
     std::vector<Objective> objectives;
     std::vector<Limit> limits;
     SingleStable single_stable = SingleStable::orbit;
+    Sampling sampling;
     SolverOptions solver;
 };
 

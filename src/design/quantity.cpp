@@ -38,13 +38,14 @@ static_assert(table_is_in_order());
 constexpr std::array mechanical = {Quantity::peak_force,      Quantity::amplitude,    Quantity::drive_frequency,
                                    Quantity::impact_velocity, Quantity::contact_time, Quantity::impulse,
                                    Quantity::stop_work,       Quantity::rig_force,    Quantity::max_multiplier,
-                                   Quantity::contacts,        Quantity::period};
+                                   Quantity::contacts,        Quantity::period,       Quantity::band_lower,
+                                   Quantity::band_upper};
 
-constexpr std::array electromechanical = {Quantity::peak_force,      Quantity::amplitude,     Quantity::drive_frequency,
-                                          Quantity::impact_velocity, Quantity::contact_time,  Quantity::impulse,
-                                          Quantity::stop_work,       Quantity::rig_force,     Quantity::max_multiplier,
-                                          Quantity::electric_field,  Quantity::drive_current, Quantity::apparent_power,
-                                          Quantity::contacts,        Quantity::period};
+constexpr std::array electromechanical = {
+    Quantity::peak_force,     Quantity::amplitude,      Quantity::drive_frequency, Quantity::impact_velocity,
+    Quantity::contact_time,   Quantity::impulse,        Quantity::stop_work,       Quantity::rig_force,
+    Quantity::max_multiplier, Quantity::electric_field, Quantity::drive_current,   Quantity::apparent_power,
+    Quantity::contacts,       Quantity::period,         Quantity::band_lower,      Quantity::band_upper};
 
 }  // namespace
 
@@ -65,9 +66,6 @@ std::string_view unavailable(Quantity quantity, Family family) {
             return family == Family::dielectric_elastomer_si
                      ? ""
                      : "exists only for dielectric elastomer problems given in SI units";
-        case Quantity::band_lower:
-        case Quantity::band_upper:
-            return "needs the branch of orbits to be traced, which is not available in this version";
         default: return "";
     }
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace percuss::flow {
@@ -25,6 +27,17 @@ void reset(Result& result) {
     storage.clear();
     result = Result{};
     result.contacts = std::move(storage);
+}
+
+void check(const EnsembleRequest& request, std::size_t members) {
+    if (!(request.duration >= 0.0)) {
+        throw std::invalid_argument("ensemble request: duration = " + std::to_string(request.duration) +
+                                    ": allowed are non-negative numbers");
+    }
+    if (members < request.states.size()) {
+        throw std::invalid_argument("ensemble request: " + std::to_string(request.states.size()) +
+                                    " starts, but only " + std::to_string(members) + " members");
+    }
 }
 
 double Integrator::stop_position(const ParameterVector& p) const {
@@ -62,6 +75,7 @@ void System::run(const Request& request, Result& result) const {
 
 void Integrator::run_ensemble(const ParameterVector& parameters, const EnsembleRequest& request,
                               std::span<EnsembleMember> members) const {
+    check(request, members.size());
     Request one;
     one.theta = request.theta;
     one.duration = request.duration;

@@ -130,7 +130,7 @@ void reset(Result& result);
 struct EnsembleRequest {
     std::span<const State> states;
     double theta = 0.0;
-    double duration = 0.0;  ///< in theta, positive
+    double duration = 0.0;  ///< in theta, not negative
     StopMode stop = StopMode::hybrid;
     int max_events = 128;  ///< per start
     long max_steps = 200000;
@@ -142,6 +142,9 @@ struct EnsembleMember {
     State state{};     ///< at the end
     int contacts = 0;  ///< entries met
 };
+
+/// Throws std::invalid_argument when the duration is negative or NaN, or when there are fewer members than starts.
+void check(const EnsembleRequest& request, std::size_t members);
 
 /// Names and places of the parameters that the levels above must know by role, and the symmetry of the free system.
 struct SystemInfo {
@@ -180,8 +183,8 @@ public:
     /// (too many directions, negative hybrid duration) throws std::invalid_argument.
     virtual void run(const ParameterVector& parameters, const Request& request, Result& result) const = 0;
 
-    /// Follows every start of the request; `members` has as many entries. One after another unless the integrator has
-    /// something faster.
+    /// Follows every start of the request; `members` has as many entries, else std::invalid_argument, as for a negative
+    /// duration. One after another unless the integrator has something faster.
     virtual void run_ensemble(const ParameterVector& parameters, const EnsembleRequest& request,
                               std::span<EnsembleMember> members) const;
 

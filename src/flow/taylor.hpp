@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace percuss::flow {
 inline namespace PERCUSS_ISA {
@@ -247,7 +248,9 @@ private:
         for (int j = order_ - 1; j >= 1; --j) { sum = sum * step_ + jet_.x()[j]; }
         if (single) {
             divided_gap_ = sum;
-            if (duration_ != 0) { divided_gap_ += start * (Base(1) / duration_); }
+            // At grazing Newton's method takes the duration to zero, so past where its reciprocal is finite.
+            constexpr Base shortest = std::numeric_limits<double>::min();
+            if (duration_ > shortest || duration_ < -shortest) { divided_gap_ += start * (Base(1) / duration_); }
         } else {
             divided_gap_ = (sum * step_ + start) * (Base(1) / duration_);
         }

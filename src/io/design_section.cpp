@@ -144,9 +144,8 @@ design::SingleStable parse_single_stable(const Setting& setting) {
     const std::string_view text = trimmed(setting.value);
     if (text == "off") { return design::SingleStable::off; }
     if (text == "orbit") { return design::SingleStable::orbit; }
-    if (text == "sampled" || text == "refuted") {
-        throw bad_value(setting, "is not available in this version; off and orbit are");
-    }
+    if (text == "sampled") { return design::SingleStable::sampled; }
+    if (text == "refuted") { return design::SingleStable::refuted; }
     throw bad_value(setting, "must be off, orbit, sampled or refuted");
 }
 

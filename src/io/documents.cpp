@@ -64,9 +64,13 @@ Json orbit_of(const design::OrbitReport& orbit) {
 }
 
 Json attractor_of(const design::Attractor& attractor) {
-    return {{"period", attractor.period},         {"state", attractor.state},
-            {"peak_force", attractor.peak_force}, {"amplitude", attractor.amplitude},
-            {"share", attractor.share},           {"max_multiplier", attractor.max_multiplier}};
+    return {{"period", attractor.period},
+            {"kind", attractor.kind},
+            {"state", attractor.state},
+            {"peak_force", attractor.peak_force},
+            {"amplitude", attractor.amplitude},
+            {"share", attractor.share},
+            {"max_multiplier", attractor.max_multiplier}};
 }
 
 Json uniqueness_of(const design::Uniqueness& uniqueness) {
@@ -119,6 +123,9 @@ Json evaluation_document(const ProblemFile& problem, std::string_view schema, co
         out["operating_point"].erase("edge_omega");
     }
     out["quantities"] = per_quantity(evaluation.quantities, family);
+    if (!evaluation.band_reasons[0].empty() || !evaluation.band_reasons[1].empty()) {
+        out["band"] = {{"lower", evaluation.band_reasons[0]}, {"upper", evaluation.band_reasons[1]}};
+    }
     out["orbit"] = orbit_of(evaluation.orbit);
     out["uniqueness"] = uniqueness_of(evaluation.uniqueness);
     out["gradients"] = gradients_of(evaluation, family, with_edge);
@@ -139,6 +146,13 @@ Json integer_case_of(const study::IntegerCaseReport& report) {
             {"kkt_residual", report.kkt_residual},
             {"design", design_of(report.design)},
             {"reason", report.reason}};
+}
+
+Json counterexample_of(const study::Counterexample& found) {
+    return {{"layers", found.layers},         {"design", design_of(found.design)},
+            {"objective", found.objective},   {"period", found.period},
+            {"peak_force", found.peak_force}, {"window", {found.window_lower, found.window_upper}},
+            {"remedy", found.remedy}};
 }
 
 std::string_view origin_text(Origin origin) {
@@ -226,6 +240,11 @@ std::string optimise_document(const ProblemFile& problem, const study::OptimiseS
     for (const study::IntegerCaseReport& report : result.per_layers) {
         out["per_layers"].push_back(integer_case_of(report));
     }
+    out["counterexamples"] = Json::array();
+    for (const study::Counterexample& found : result.counterexamples) {
+        out["counterexamples"].push_back(counterexample_of(found));
+    }
+    out["objective_unrefuted"] = result.objective_unrefuted;
     out["error_estimate"] = per_quantity(result.best.error_estimates, family);
     out["evaluations"] = result.evaluations;
     out["seconds"] = result.seconds;

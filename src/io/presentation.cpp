@@ -188,6 +188,40 @@ Block integer_cases_block(const ProblemFile& problem, const study::OptimiseStudy
 
 }  // namespace
 
+namespace {
+
+Block counterexamples_block(const ProblemFile& problem, const study::OptimiseStudyResult& result) {
+    Block block{"Counterexamples: motions that were found beside the best design so far",
+                "",
+                {"layers", "objective there", "period", "peak force", "exists from", "to", "remedy"},
+                {}};
+    const auto& objectives = problem.study.design.objectives;
+    for (const study::Counterexample& found : result.counterexamples) {
+        const std::string objective = objectives.empty()
+                                        ? number(found.objective)
+                                        : quantity_text(problem, objectives.front().quantity, found.objective);
+        block.rows.push_back({number(found.layers), objective,
+                              found.period > 0 ? std::to_string(found.period) : "aperiodic",
+                              quantity_text(problem, Quantity::peak_force, found.peak_force),
+                              quantity_text(problem, Quantity::drive_frequency, found.window_lower),
+                              quantity_text(problem, Quantity::drive_frequency, found.window_upper), found.remedy});
+    }
+    return block;
+}
+
+/// What it cost to be alone.
+Block price_block(const ProblemFile& problem, const study::OptimiseStudyResult& result) {
+    if (std::isnan(result.objective_unrefuted) || result.status != "optimal") { return sentence(""); }
+    const Quantity objective = problem.study.design.objectives.front().quantity;
+    const double now = result.best.value(objective);
+    return sentence("Price of being the only stable motion found: " +
+                    std::string(design::quantity_info(objective).name) + " " + quantity_text(problem, objective, now) +
+                    " instead of " + quantity_text(problem, objective, result.objective_unrefuted) + " (" +
+                    number(100.0 * (now / result.objective_unrefuted - 1.0), 3) + " %)");
+}
+
+}  // namespace
+
 Presentation present_check(const ProblemFile& problem) {
     Presentation out;
     out.title = problem.name + ": problem as understood";
@@ -231,6 +265,8 @@ Presentation present_optimum(const ProblemFile& problem, const study::OptimiseSt
     add_evaluation(problem, result.best, true, out);
     out.blocks.push_back(limits_block(result));
     out.blocks.push_back(integer_cases_block(problem, result));
+    out.blocks.push_back(counterexamples_block(problem, result));
+    out.blocks.push_back(price_block(problem, result));
     out.blocks.push_back(sentence("KKT residual " + number(result.kkt_residual, 3) + ", " +
                                   std::to_string(result.evaluations) + " evaluations in " + number(result.seconds, 3) +
                                   " s"));

@@ -54,6 +54,7 @@ ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting>
     design.actuator.family = family_of(settings);
     read_actuator(settings, design, troubles);
     read_design(settings, design, troubles);
+    read_sampling(settings, design.sampling, troubles);
     read_optimiser(settings, problem.study.optimiser, troubles);
     read_solver(settings, design.solver, troubles);
     read_orbit(settings, design.actuator.family, problem.orbit, troubles);

@@ -27,7 +27,8 @@ void read_actuator(const SettingList& settings, design::Problem& problem, Troubl
 /// [design] into `problem`, whose family and stop law are set.
 void read_design(const SettingList& settings, design::Problem& problem, Troubles& troubles);
 
-/// [optimiser], [solver] and [orbit].
+/// [uniqueness], [optimiser], [solver] and [orbit].
+void read_sampling(const SettingList& settings, design::Sampling& sampling, Troubles& troubles);
 void read_optimiser(const SettingList& settings, study::OptimiserOptions& options, Troubles& troubles);
 void read_solver(const SettingList& settings, design::SolverOptions& options, Troubles& troubles);
 void read_orbit(const SettingList& settings, model::Family family, study::OrbitStudy& orbit, Troubles& troubles);

@@ -75,6 +75,9 @@ public:
         text("stop.law", std::string(law_text(design.actuator.law)));
         if (!model::has_frequency(design.actuator)) { number("drive.margin", design.margin, ""); }
         design_keys(design);
+        number("uniqueness.starts", static_cast<double>(design.sampling.starts), "");
+        number("uniqueness.cycles", design.sampling.cycles, "");
+        if (design.sampling.margin) { number("uniqueness.margin", *design.sampling.margin, ""); }
         const study::OptimiserOptions& optimiser = problem_.study.optimiser;
         text("optimiser.method", optimiser.method);
         number("optimiser.starts", optimiser.starts, "");

@@ -132,9 +132,17 @@ std::vector<SettingInfo> make_table() {
     table.push_back({"design.minimise", "", "a quantity", "none", "what to make small", true});
     table.push_back(
         {"design.limit", "", "QUANTITY <= VALUE or QUANTITY >= VALUE", "none", "what a design must respect", true});
-    table.push_back({"design.single_stable", "", "off | orbit", "orbit",
-                     "how it is checked that the motion is the only stable one"});
+    table.push_back(
+        {"design.single_stable", "", "off | orbit | sampled | refuted", "orbit",
+         "how it is checked that the motion is the only stable one: among the period-1 motions; by starts all "
+         "over a box; and with what refutes a design avoided by the optimiser"});
 
+    table.push_back({"uniqueness.starts", "", "whole number, at least 1", std::to_string(problem.sampling.starts),
+                     "starts of the sampled check of uniqueness (single_stable = sampled or refuted)"});
+    table.push_back({"uniqueness.cycles", "", "whole number, at least 1", std::to_string(problem.sampling.cycles),
+                     "drive cycles that each of them may take to settle"});
+    table.push_back({"uniqueness.margin", "", "at least 0, below 0.5", "drive.margin",
+                     "distance kept from the frequencies at which a motion that refuted a design exists"});
     table.push_back({"optimiser.method", "", alternatives(optimise::methods()), optimiser.method, "optimiser"});
     table.push_back({"optimiser.starts", "", "whole number, at least 1", std::to_string(optimiser.starts),
                      "local solves per layer count"});

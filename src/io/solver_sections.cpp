@@ -1,6 +1,7 @@
 #include "io/problem_sections.hpp"
 
 #include "io/setting_values.hpp"
+#include "model/units.hpp"
 #include "optimise/solve.hpp"
 
 #include <array>
@@ -18,6 +19,21 @@ constexpr double coarsest_solver_tolerance = 1e-2;
 std::size_t states_of(model::Family family) {
     const bool is_spring = model::actuator_kind(family) == model::ActuatorKind::spring_mass;
     return static_cast<std::size_t>(is_spring ? model::spring::states : model::membrane::states);
+}
+
+void read_sampling(const SettingList& settings, design::Sampling& sampling, Troubles& troubles) {
+    with(settings, "uniqueness.starts", troubles,
+         [&](const Setting& s) { sampling.starts = parse_count(s, 1, 100'000'000); });
+    with(settings, "uniqueness.cycles", troubles,
+         [&](const Setting& s) { sampling.cycles = parse_count(s, 1, 10'000'000); });
+    with(settings, "uniqueness.margin", troubles, [&](const Setting& s) {
+        double margin = -1.0;
+        try {
+            margin = model::parse_quantity(s.value, "1");
+        } catch (const std::invalid_argument& error) { throw bad_value(s, error.what()); }
+        if (!(margin >= 0.0 && margin < 0.5)) { throw bad_value(s, "must be at least 0 and below 0.5 (50 %)"); }
+        sampling.margin = margin;
+    });
 }
 
 void read_optimiser(const SettingList& settings, study::OptimiserOptions& options, Troubles& troubles) {

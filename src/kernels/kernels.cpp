@@ -2,6 +2,7 @@
 
 #include "flow/sundials.hpp"
 #include "flow/taylor_order.hpp"
+#include "kernels/ensemble_table.hpp"
 #include "kernels/plain_systems.hpp"
 #include "kernels/taylor_table.hpp"
 
@@ -14,7 +15,8 @@ namespace {
 
 struct Set {
     std::string_view name;
-    const TaylorTable* table;
+    const TaylorTable* single;
+    const EnsembleTable* ensemble;
 };
 
 /// What was compiled in and runs here, weakest first.
@@ -22,21 +24,21 @@ const std::vector<Set>& available_sets() {
     static const std::vector<Set> sets = [] {
         std::vector<Set> found;
 #if defined(PERCUSS_HAVE_GENERIC)
-        found.push_back({"generic", &taylor_table_generic()});
+        found.push_back({"generic", &taylor_table_generic(), &ensemble_table_generic()});
 #endif
 #ifdef PERCUSS_HAVE_V2
-        found.push_back({"v2", &taylor_table_v2()});
+        found.push_back({"v2", &taylor_table_v2(), &ensemble_table_v2()});
 #endif
 #ifdef PERCUSS_HAVE_V3
         if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) {
-            found.push_back({"v3", &taylor_table_v3()});
+            found.push_back({"v3", &taylor_table_v3(), &ensemble_table_v3()});
         }
 #endif
 #ifdef PERCUSS_HAVE_V4
         if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
             __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
             __builtin_cpu_supports("avx512vl")) {
-            found.push_back({"v4", &taylor_table_v4()});
+            found.push_back({"v4", &taylor_table_v4(), &ensemble_table_v4()});
         }
 #endif
         return found;
@@ -66,7 +68,9 @@ public:
         if (kind == model::ActuatorKind::dielectric_elastomer) {
             scene = viscous ? Scene::membranes : Scene::elastic_membranes;
         }
-        kernels_ = &(*choose_set(options.instruction_set).table)[static_cast<std::size_t>(scene)];
+        const Set& set = choose_set(options.instruction_set);
+        kernels_ = &(*set.single)[static_cast<std::size_t>(scene)];
+        ensemble_ = (*set.ensemble)[static_cast<std::size_t>(scene)];
         settings_.law = static_cast<std::uint8_t>(law);
         settings_.order = flow::taylor_order(options.tolerance);
     }
@@ -85,6 +89,12 @@ public:
         std::size_t lanes = 0;
         while (static_cast<std::size_t>(lane_classes[lanes]) < request.directions.size()) { ++lanes; }
         (*kernels_)[lanes](parameters, settings_, request, result);
+    }
+
+    void run_ensemble(const flow::ParameterVector& parameters, const flow::EnsembleRequest& request,
+                      std::span<flow::EnsembleMember> members) const override {
+        flow::check(request, members.size());
+        ensemble_(parameters, settings_, request, members);
     }
 
     [[nodiscard]] double centre(const flow::ParameterVector& p) const override { return plain_->centre(p); }
@@ -108,6 +118,7 @@ private:
     double tolerance_;
     TaylorSettings settings_;
     const TaylorTable::value_type* kernels_ = nullptr;
+    EnsembleKernel ensemble_ = nullptr;
 };
 
 }  // namespace

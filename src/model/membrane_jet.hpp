@@ -92,6 +92,8 @@ public:
     void set_position(const Base& x) { set_base(x_[0], x); }
     T& position() { return x_[0]; }
     T& velocity() { return v_[0]; }
+    /// L = (lambda_1/xi)^alpha_B of both membranes at the expansion point, which is what is integrated instead of xi.
+    std::array<T, 2>& stretch() { return stretch_; }
 
     /// Coefficients of x and v up to `order`, of everything else up to `order - 1`. theta is the phase at the expansion
     /// point; `touching` adds the stop's force.

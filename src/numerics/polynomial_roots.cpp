@@ -21,25 +21,35 @@ struct Search {
     }
 };
 
-double evaluate(const double* c, int degree, double t) {
-    double r = c[degree];
-    for (int j = degree - 1; j >= 0; --j) { r = r * t + c[j]; }
-    return r;
-}
+/// C(n, j) for all degrees, row after row.
+constexpr auto binomials = [] {
+    std::array<double, (max_degree + 1) * (max_degree + 2) / 2> table{};
+    std::size_t at = 0;
+    for (int n = 0; n <= max_degree; ++n) {
+        double binomial = 1.0;
+        for (int j = 0; j <= n; ++j) {
+            table[at++] = binomial;
+            binomial = binomial * (n - j) / (j + 1);
+        }
+    }
+    return table;
+}();
 
-double evaluate_derivative(const double* c, int degree, double t) {
-    double r = degree * c[degree];
-    for (int j = degree - 1; j >= 1; --j) { r = r * t + j * c[j]; }
-    return degree == 0 ? 0.0 : r;
+/// The polynomial and its derivative at t, side by side.
+void evaluate(const double* c, int degree, double t, double& value, double& slope) {
+    value = c[degree];
+    slope = degree * c[degree];
+    for (int j = degree - 1; j >= 1; --j) {
+        value = value * t + c[j];
+        slope = slope * t + j * c[j];
+    }
+    if (degree > 0) { value = value * t + c[0]; }
 }
 
 /// Monomial coefficients on [0,1] to Bernstein coefficients: b_i = sum_j C(i,j)/C(n,j) c_j.
 void to_bernstein(const double* c, int n, Coefficients& b) {
-    double binomial = 1.0;  // C(n, j)
-    for (int j = 0; j <= n; ++j) {
-        b[static_cast<std::size_t>(j)] = c[j] / binomial;
-        binomial = binomial * (n - j) / (j + 1);
-    }
+    const double* binomial = &binomials[static_cast<std::size_t>(n * (n + 1) / 2)];
+    for (int j = 0; j <= n; ++j) { b[static_cast<std::size_t>(j)] = c[j] / binomial[j]; }
     for (int level = 1; level <= n; ++level) {
         for (int i = n; i >= level; --i) { b[static_cast<std::size_t>(i)] += b[static_cast<std::size_t>(i - 1)]; }
     }
@@ -64,10 +74,11 @@ int variations(const Coefficients& b, int n) {
 double polish(const Search& search, double lower, double upper, int after) {
     double t = 0.5 * (lower + upper);
     for (int iteration = 0; iteration < 80; ++iteration) {
-        const double value = evaluate(search.monomial, search.degree, t);
+        double value = 0.0;
+        double slope = 0.0;
+        evaluate(search.monomial, search.degree, t, value, slope);
         if (value == 0.0) { return t; }
         ((value > 0.0) == (after > 0) ? upper : lower) = t;
-        const double slope = evaluate_derivative(search.monomial, search.degree, t);
         double next = t - value / slope;
         if (!(next > lower && next < upper)) { next = 0.5 * (lower + upper); }
         if (std::abs(next - t) <= 1e-16 || next == t) { return next; }

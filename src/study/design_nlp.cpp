@@ -47,17 +47,18 @@ std::vector<Column> design_columns(const design::Problem& problem) {
 }
 
 DesignNlp::DesignNlp(const design::Evaluator& evaluator, model::Specification fixed, double objective_scale,
-                     RowSink* rows)
+                     RowSink* rows, std::vector<Exclusion> exclusions)
     : evaluator_(evaluator),
       fixed_(fixed),
       objective_scale_(objective_scale),
-      rows_(rows) {
+      rows_(rows),
+      exclusions_(std::move(exclusions)) {
     for (const design::DesignVariable& v : problem().variables) {
         if (!v.integer) { variables_.push_back({v.key, v.lower, v.upper, v.logarithmic}); }
     }
 }
 
-int DesignNlp::constraints() const { return static_cast<int>(problem().limits.size()); }
+int DesignNlp::constraints() const { return static_cast<int>(problem().limits.size() + exclusions_.size()); }
 Vector DesignNlp::lower() const { return Vector::Zero(variables()); }
 Vector DesignNlp::upper() const { return Vector::Ones(variables()); }
 
@@ -112,14 +113,37 @@ optimise::Evaluation DesignNlp::translate(const design::Evaluation& evaluation, 
         out.jacobian.resize(m, n);
         for (int j = 0; j < n; ++j) { out.gradient[j] = sign * gradient_of(objective.quantity, j); }
     }
-    for (int i = 0; i < m; ++i) {
+    const int limits = static_cast<int>(problem().limits.size());
+    for (int i = 0; i < limits; ++i) {
         const design::Limit& limit = problem().limits[static_cast<std::size_t>(i)];
         const double factor = (limit.upper ? 1.0 : -1.0) / limit_scale(static_cast<std::size_t>(i));
         out.constraints[i] = factor * (evaluation.value(limit.quantity) - limit.bound);
         for (int j = 0; with_gradient && j < n; ++j) { out.jacobian(i, j) = factor * gradient_of(limit.quantity, j); }
     }
+    add_exclusions(evaluation, x, with_gradient, limits, out);
     out.ok = true;
     return out;
+}
+
+void DesignNlp::add_exclusions(const design::Evaluation& evaluation, const Vector& x, bool with_gradient, int first,
+                               optimise::Evaluation& out) const {
+    if (exclusions_.empty()) { return; }
+    const model::Specification spec = specification(x);
+    std::vector<model::Key> keys;
+    if (with_gradient) {
+        for (const ContinuousVariable& v : variables_) { keys.push_back(v.key); }
+    }
+    for (std::size_t i = 0; i < exclusions_.size(); ++i) {
+        const int row = first + static_cast<int>(i);
+        const ExclusionValue value =
+            study::evaluate(exclusions_[i], evaluator_.system(spec), spec, evaluation.operating_point.omega,
+                            evaluation.gradients.omega, keys);
+        out.constraints[row] = value.value;
+        for (std::size_t j = 0; j < keys.size(); ++j) {
+            const int column = static_cast<int>(j);
+            out.jacobian(row, column) = value.gradient[j] * variables_[j].slope(x[column]);
+        }
+    }
 }
 
 optimise::Evaluation DesignNlp::evaluate(const Vector& x, bool /*want_gradient*/) {

@@ -4,6 +4,7 @@
 
 #include "design/evaluate.hpp"
 #include "optimise/nlp.hpp"
+#include "study/exclusion.hpp"
 #include "study/study.hpp"
 
 #include <map>
@@ -27,7 +28,9 @@ struct ContinuousVariable {
 class DesignNlp final : public optimise::Nlp {
 public:
     /// `fixed`: the actuator with the enumerated integers set. objective_scale > 0.
-    DesignNlp(const design::Evaluator& evaluator, model::Specification fixed, double objective_scale, RowSink* rows);
+    /// exclusions: constraints after the limits, in their order.
+    DesignNlp(const design::Evaluator& evaluator, model::Specification fixed, double objective_scale, RowSink* rows,
+              std::vector<Exclusion> exclusions = {});
 
     [[nodiscard]] int variables() const override { return static_cast<int>(variables_.size()); }
     [[nodiscard]] int constraints() const override;
@@ -50,6 +53,9 @@ public:
 
 private:
     [[nodiscard]] const design::Problem& problem() const { return evaluator_.problem(); }
+    /// Constraint values and derivatives of the exclusions from row `first` on.
+    void add_exclusions(const design::Evaluation& evaluation, const optimise::Vector& x, bool with_gradient, int first,
+                        optimise::Evaluation& out) const;
     void write_row(const model::Specification& spec, const design::Evaluation& evaluation);
 
     const design::Evaluator& evaluator_;
@@ -57,6 +63,7 @@ private:
     std::vector<ContinuousVariable> variables_;
     double objective_scale_;
     RowSink* rows_;
+    std::vector<Exclusion> exclusions_;
     std::map<design::EvaluationStatus, long> statuses_;
 };
 

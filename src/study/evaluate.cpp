@@ -29,13 +29,27 @@ std::vector<model::Key> gradient_keys(const design::Problem& problem) {
     return keys;
 }
 
+std::vector<design::Quantity> quantities_to_report(const design::Problem& problem) {
+    const auto all = design::reported_quantities(problem.actuator.family);
+    std::vector<design::Quantity> quantities(all.begin(), all.end());
+    bool with_band = problem.single_stable > design::SingleStable::orbit;
+    const auto is_band = [](design::Quantity q) {
+        return q == design::Quantity::band_lower || q == design::Quantity::band_upper;
+    };
+    for (const design::Limit& limit : problem.limits) { with_band = with_band || is_band(limit.quantity); }
+    for (const design::Objective& objective : problem.objectives) {
+        with_band = with_band || is_band(objective.quantity);
+    }
+    if (!with_band) { std::erase_if(quantities, is_band); }
+    return quantities;
+}
+
 EvaluateStudyResult run_evaluate(const StudyProblem& problem, bool gradients) {
     const auto start = std::chrono::steady_clock::now();
     EvaluateStudyResult result;
-    const design::Evaluator evaluator(problem.design);
+    const design::Evaluator evaluator(design_problem(problem));
     design::Demand demand;
-    const auto quantities = design::reported_quantities(problem.design.actuator.family);
-    demand.quantities.assign(quantities.begin(), quantities.end());
+    demand.quantities = quantities_to_report(problem.design);
     if (gradients) { demand.gradients = gradient_keys(problem.design); }
     demand.error_estimates = true;
     result.evaluation = evaluator.evaluate(demand);

@@ -1,8 +1,10 @@
 #include "study/optimise.hpp"
 
+#include "design/scene.hpp"
 #include "optimise/multi_start.hpp"
 #include "optimise/solve.hpp"
-#include "study/design_nlp.hpp"
+#include "study/evaluate.hpp"
+#include "study/integer_case.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -15,7 +17,6 @@ namespace {
 
 using design::Evaluator;
 using design::Quantity;
-using optimise::MultiStartResult;
 using optimise::Vector;
 
 /// The claimed optimum is evaluated once more with the integrator this much tighter.
@@ -38,95 +39,34 @@ void check(const StudyProblem& problem) {
     }
 }
 
-/// All combinations of the integer variables, in order.
-std::vector<model::Specification> enumerate_integers(const design::Problem& problem) {
-    std::vector<model::Specification> cases = {problem.actuator};
-    for (const design::DesignVariable& v : problem.variables) {
-        if (!v.integer) { continue; }
-        std::vector<model::Specification> extended;
-        for (const model::Specification& base : cases) {
-            for (double value = std::ceil(v.lower); value <= v.upper; value += 1.0) {
-                extended.push_back(base);
-                extended.back().set(v.key, value);
-            }
-        }
-        cases = std::move(extended);
-    }
-    if (cases.empty()) { throw std::invalid_argument("design.variable: an integer range holds no integer"); }
-    if (cases.size() > 256) {
-        throw std::invalid_argument("design.variable: integer variables have more than 256 combinations");
-    }
-    return cases;
-}
-
-double first_integer_value(const design::Problem& problem, const model::Specification& spec) {
-    for (const design::DesignVariable& v : problem.variables) {
-        if (v.integer) { return spec.value(v.key); }
-    }
-    return design::absent;
-}
-
-/// One integer case solved.
-struct Case {
-    model::Specification fixed;
-    MultiStartResult solved;
-    std::optional<design::Evaluation> verified;  ///< at the tighter tolerance, all quantities
-    optimise::Certificate certificate;           ///< of the verified values
-    IntegerCaseReport report;
-    Vector x;
-    long evaluations = 0;
-    bool optimal = false;
-};
-
-std::string describe_failures(const DesignNlp& nlp) {
-    std::string text = "no design of the box could be evaluated:";
-    for (const auto& [status, count] : nlp.statuses()) {
-        text += " " + std::to_string(count) + " " + std::string(design::to_string(status)) + ",";
-    }
-    text.pop_back();
-    return text;
-}
-
-/// The limits that cannot be met together: those with a multiplier of the elastic problem, else the most violated one.
-std::string describe_infeasible(const design::Problem& problem, const MultiStartResult& solved) {
-    std::string names;
-    const Vector& multipliers = solved.certificate.multipliers;
-    const Vector& violations = solved.best.constraints;
-    for (std::size_t i = 0; i < problem.limits.size(); ++i) {
-        const int k = static_cast<int>(i);
-        const bool blamed = multipliers.size() > k && multipliers[k] > 1e-3 && violations[k] > 0.0;
-        if (blamed) { names += (names.empty() ? "" : " and ") + problem.limits[i].text; }
-    }
-    if (names.empty()) {
-        int worst = 0;
-        violations.maxCoeff(&worst);
-        names = problem.limits[static_cast<std::size_t>(worst)].text;
-    }
-    return "no design was found that meets the limit " + names;
-}
-
 class Optimisation {
 public:
     Optimisation(const StudyProblem& problem, RowSink* rows, const Observer& observer, const StopRequest& stop)
         : problem_(problem),
-          design_(problem.design),
-          evaluator_(design_),
-          tight_evaluator_(tightened(design_)),
+          design_(design_problem(problem)),
+          evaluator_(at_tier_one(design_)),
+          tight_evaluator_(tightened(at_tier_one(design_))),
           rows_(rows),
           observer_(observer),
           stop_(stop) {}
 
     OptimiseStudyResult run() {
         const std::vector<model::Specification> fixed = enumerate_integers(design_);
-        std::vector<Case> cases;
+        std::vector<IntegerCase> cases;
         for (std::size_t i = 0; i < fixed.size() && !stopped(); ++i) {
             report_progress(static_cast<double>(i) / static_cast<double>(fixed.size()), fixed[i]);
             cases.push_back(solve(fixed[i], cases));
         }
+        if (design_.single_stable > design::SingleStable::orbit) { refute(cases); }
         return conclude(cases, fixed.size());
     }
 
 private:
+    /// The search runs at tier 1; its result is then looked at by starts.
+    static design::Problem at_tier_one(design::Problem problem) {
+        problem.single_stable = std::min(problem.single_stable, design::SingleStable::orbit);
+        return problem;
+    }
     static design::Problem tightened(design::Problem problem) {
         problem.solver.tolerance = std::max(1e-16, verification_factor * problem.solver.tolerance);
         return problem;
@@ -153,23 +93,30 @@ private:
         return 1.0;
     }
 
-    Case solve(const model::Specification& fixed, const std::vector<Case>& before) {
-        Case c;
+    IntegerCase solve(const model::Specification& fixed, const std::vector<IntegerCase>& before) {
+        return solve(
+            fixed, before.empty() || !before.back().optimal ? std::vector<Vector>{} : std::vector{before.back().x}, {});
+    }
+
+    IntegerCase solve(const model::Specification& fixed, const std::vector<Vector>& warm_starts,
+                      const std::vector<Exclusion>& exclusions) {
+        IntegerCase c;
         c.fixed = fixed;
+        c.exclusions = exclusions;
         c.report.layers = first_integer_value(design_, fixed);
         if (scale_ == 0.0) { scale_ = objective_scale(fixed); }
-        DesignNlp nlp(evaluator_, fixed, scale_, rows_);
+        DesignNlp nlp(evaluator_, fixed, scale_, rows_, exclusions);
         if (nlp.variables() == 0) {
             solve_fixed(c, nlp);
         } else {
-            solve_continuous(c, nlp, before);
+            solve_continuous(c, nlp, warm_starts);
         }
         for (const auto& [status, count] : nlp.statuses()) { c.evaluations += count; }
         return c;
     }
 
     /// Nothing to move: the design is evaluated and checked against its limits.
-    void solve_fixed(Case& c, DesignNlp& nlp) {
+    void solve_fixed(IntegerCase& c, DesignNlp& nlp) {
         c.x = Vector(0);
         const optimise::Evaluation e = nlp.evaluate(c.x, false);
         if (!e.ok) {
@@ -191,7 +138,7 @@ private:
         settle(c, nlp);
     }
 
-    void solve_continuous(Case& c, DesignNlp& nlp, const std::vector<Case>& before) {
+    void solve_continuous(IntegerCase& c, DesignNlp& nlp, const std::vector<Vector>& warm_starts) {
         optimise::MultiStartOptions options;
         options.solver.method = problem_.optimiser.method;
         options.solver.max_evaluations = problem_.optimiser.max_evaluations;
@@ -200,8 +147,14 @@ private:
         options.solver.stop = stop_;
         options.candidates = problem_.optimiser.samples;
         options.starts = problem_.optimiser.starts;
+        if (!c.exclusions.empty()) {
+            // Half of these problems have no solution, and each evaluation follows a window to its design.
+            options.candidates = std::min(options.candidates, 16);
+            options.starts = 1;
+            options.solver.max_evaluations = std::min(options.solver.max_evaluations, 400);
+        }
         options.certificate_tolerance = problem_.optimiser.tolerance;
-        if (!before.empty() && before.back().optimal) { options.warm_starts.push_back(before.back().x); }
+        options.warm_starts = warm_starts;
         c.solved = optimise::multi_start(nlp, options);
         c.x = c.solved.best.x;
         if (c.solved.best.constraints.size() == 0 && !std::isfinite(c.solved.best.objective)) {
@@ -219,10 +172,9 @@ private:
     }
 
     /// Cold evaluation with the tighter integrator, and the certificate of its values.
-    void verify(Case& c, const DesignNlp& nlp) {
+    void verify(IntegerCase& c, const DesignNlp& nlp) {
         design::Demand demand = nlp.demand(true);
-        const auto all = design::reported_quantities(design_.actuator.family);
-        demand.quantities.assign(all.begin(), all.end());
+        demand.quantities = quantities_to_report(at_tier_one(design_));
         demand.error_estimates = true;
         c.verified = tight_evaluator_.evaluate(nlp.specification(c.x), demand);
         const optimise::Evaluation e = nlp.translate(*c.verified, c.x, true);
@@ -231,7 +183,7 @@ private:
         if (nlp.variables() > 0) { c.certificate = optimise::certify(e, c.x, nlp.lower(), nlp.upper(), options); }
     }
 
-    void settle(Case& c, const DesignNlp& nlp) {
+    void settle(IntegerCase& c, const DesignNlp& nlp) {
         const double tolerance = problem_.optimiser.tolerance;
         const bool ok = c.verified->status == design::EvaluationStatus::ok;
         c.optimal = ok && c.certificate.certified(tolerance);
@@ -253,25 +205,138 @@ private:
         return values;
     }
 
+    [[nodiscard]] bool better(const IntegerCase& a, const IntegerCase& b) const {
+        return design_.objectives.front().maximise ? a.report.objective > b.report.objective
+                                                   : a.report.objective < b.report.objective;
+    }
+
+    /// The best certified case; without one the best that could be verified; null if there is none.
+    [[nodiscard]] std::size_t best_of(const std::vector<IntegerCase>& cases) const {
+        std::size_t best = cases.size();
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+            const IntegerCase& c = cases[i];
+            if (!c.verified || c.verified->status != design::EvaluationStatus::ok) { continue; }
+            const bool first = best == cases.size();
+            const bool differ = !first && c.optimal != cases[best].optimal;  // a certified case comes first
+            if (first || (differ ? c.optimal : better(c, cases[best]))) { best = i; }
+        }
+        return best;
+    }
+
+    // ---- tiers 2 and 3
+
+    /// Looks at the best design by starts; a counterexample becomes a constraint of its case, which is solved again,
+    /// until no start refutes the best design.
+    void refute(std::vector<IntegerCase>& cases) {
+        const Evaluator sampled(sampled_problem());
+        for (int round = 0; round < most_rounds && !stopped(); ++round) {
+            const std::size_t at = best_of(cases);
+            if (at == cases.size() || !cases[at].optimal || cases[at].looked_at) { return; }
+            IntegerCase& c = cases[at];
+            if (observer_) { observer_(-1.0, "starts around the best design"); }
+            const design::Evaluation evaluation = look_by_starts(sampled, c);
+            c.looked_at = true;
+            if (evaluation.uniqueness.verdict == design::Verdict::unique) { return; }
+            if (evaluation.uniqueness.verdict == design::Verdict::not_checked) {
+                reject(c, "whether it is alone could not be decided: " + evaluation.uniqueness.checked);
+                return;
+            }
+            if (std::isnan(unrefuted_)) { unrefuted_ = c.report.objective; }
+            counterexamples_.push_back(describe_counterexample(c, evaluation));
+            if (design_.single_stable == design::SingleStable::sampled) {
+                reject(c, evaluation.reason);
+                return;
+            }
+            avoid(c, evaluation, counterexamples_.back());
+        }
+        const std::size_t at = best_of(cases);
+        if (at < cases.size() && !cases[at].looked_at) { reject(cases[at], "the budget of counterexamples is spent"); }
+    }
+
+    [[nodiscard]] design::Problem sampled_problem() const {
+        design::Problem problem = tightened(design_);
+        problem.single_stable = design::SingleStable::sampled;
+        return problem;
+    }
+
+    design::Evaluation look_by_starts(const Evaluator& sampled, IntegerCase& c) const {
+        const DesignNlp nlp(evaluator_, c.fixed, scale_, nullptr);
+        design::Demand demand;
+        demand.quantities = {design_.objectives.front().quantity};
+        const design::Evaluation evaluation = sampled.evaluate(nlp.specification(c.x), demand);
+        c.verified->uniqueness = evaluation.uniqueness;
+        return evaluation;
+    }
+
+    static void reject(IntegerCase& c, const std::string& reason) {
+        c.optimal = false;
+        c.report.status = "not-certified";
+        c.report.reason = reason;
+    }
+
+    Counterexample describe_counterexample(const IntegerCase& c, const design::Evaluation& evaluation) const {
+        Counterexample found;
+        found.layers = c.report.layers;
+        found.design = c.report.design;
+        found.objective = c.report.objective;
+        const design::Attractor& other = evaluation.uniqueness.attractors.front();
+        found.period = other.period;
+        found.peak_force = other.peak_force;
+        found.remedy = "none tried";
+        return found;
+    }
+
+    /// The window of the intruder becomes a constraint: operate below it or above it, whichever is better.
+    void avoid(IntegerCase& c, const design::Evaluation& evaluation, Counterexample& account) {
+        const DesignNlp nlp(evaluator_, c.fixed, scale_, nullptr);
+        const model::Specification spec = nlp.specification(c.x);
+        const auto intruder = std::make_shared<const design::Intruder>(
+            design::find_window(evaluator_, spec, evaluation.operating_point.omega, evaluation.uniqueness.attractors));
+        if (!intruder->ok) {
+            account.remedy = intruder->trouble;
+            return reject(c, evaluation.reason + "; " + intruder->trouble);
+        }
+        const model::Scales scales = model::scale(spec).scales;
+        account.period = intruder->period;
+        account.window_lower = design::drive_frequency(intruder->lower.omega, scales);
+        account.window_upper = design::drive_frequency(intruder->upper.omega, scales);
+        IntegerCase best = c;
+        bool found = false;
+        for (const bool below : {true, false}) {
+            if (stopped()) { break; }
+            if (observer_) { observer_(-1.0, below ? "operating below the window" : "operating above the window"); }
+            std::vector<Exclusion> exclusions = c.exclusions;
+            exclusions.emplace_back(intruder, below, design_.sampling.margin.value_or(design_.margin));
+            IntegerCase moved = solve(c.fixed, {c.x}, exclusions);
+            c.evaluations += moved.evaluations;
+            if (moved.optimal && (!found || better(moved, best))) {
+                best = std::move(moved);
+                found = true;
+                account.remedy = below ? "operate below the window" : "operate above the window";
+            }
+        }
+        if (!found) {
+            account.remedy = "no certified design was found below or above the window";
+            return reject(c, evaluation.reason + "; " + account.remedy);
+        }
+        best.evaluations = c.evaluations;
+        c = std::move(best);
+    }
+
     /// The best certified case; without one the best feasible; without that an account of what stood in the way.
-    OptimiseStudyResult conclude(const std::vector<Case>& cases, std::size_t expected) const {
+    OptimiseStudyResult conclude(const std::vector<IntegerCase>& cases, std::size_t expected) const {
         OptimiseStudyResult result;
-        const Case* best = nullptr;
-        const bool maximise = design_.objectives.front().maximise;
-        const auto better = [&](const Case& a, const Case& b) {
-            return maximise ? a.report.objective > b.report.objective : a.report.objective < b.report.objective;
-        };
-        for (const Case& c : cases) {
+        for (const IntegerCase& c : cases) {
             result.per_layers.push_back(c.report);
             result.evaluations += c.evaluations;
-            const bool usable = c.verified && c.verified->status == design::EvaluationStatus::ok;
-            if (!usable) { continue; }
-            const bool differ = best != nullptr && c.optimal != best->optimal;  // a certified case comes first
-            if (best == nullptr || (differ ? c.optimal : better(c, *best))) { best = &c; }
         }
-        const bool cut_short = cases.size() < expected || std::any_of(cases.begin(), cases.end(), [](const Case& c) {
-                                   return c.report.status == "budget";
-                               });
+        result.counterexamples = counterexamples_;
+        result.objective_unrefuted = unrefuted_;
+        const std::size_t at = best_of(cases);
+        const IntegerCase* best = at < cases.size() ? &cases[at] : nullptr;
+        const bool cut_short =
+            cases.size() < expected ||
+            std::any_of(cases.begin(), cases.end(), [](const IntegerCase& c) { return c.report.status == "budget"; });
         if (best == nullptr) {
             result.status = cut_short ? "budget" : "infeasible";
             result.ending = cut_short ? Ending::budget : Ending::infeasible;
@@ -294,13 +359,13 @@ private:
         return result;
     }
 
-    static const Case& least_infeasible(const std::vector<Case>& cases) {
-        return *std::min_element(cases.begin(), cases.end(), [](const Case& a, const Case& b) {
+    static const IntegerCase& least_infeasible(const std::vector<IntegerCase>& cases) {
+        return *std::min_element(cases.begin(), cases.end(), [](const IntegerCase& a, const IntegerCase& b) {
             return a.solved.best.infeasibility < b.solved.best.infeasibility;
         });
     }
 
-    void fill(OptimiseStudyResult& result, const Case& best) const {
+    void fill(OptimiseStudyResult& result, const IntegerCase& best) const {
         result.best = *best.verified;
         result.kkt_residual = best.certificate.residual;
         const Quantity objective = design_.objectives.front().quantity;
@@ -320,11 +385,34 @@ private:
             report.multiplier = multiplier * scale_ / nlp.limit_scale(i);
             result.limits.push_back(report);
         }
+        add_exclusions(result, best);
         add_active_bounds(result, best, nlp);
     }
 
+    /// Windows of motions that must be avoided, as limits on omega.
+    void add_exclusions(OptimiseStudyResult& result, const IntegerCase& best) const {
+        for (std::size_t i = 0; i < best.exclusions.size(); ++i) {
+            const Exclusion& e = best.exclusions[i];
+            const DesignNlp nlp(evaluator_, best.fixed, scale_, nullptr);
+            const model::Specification spec = nlp.specification(best.x);
+            const design::WindowAt window = design::window_at(evaluator_.system(spec), *e.intruder, spec, {});
+            if (window.status != design::WindowAt::Status::found) { continue; }
+            LimitReport report;
+            report.name = "omega";
+            report.upper = e.below;
+            report.limit = e.below ? (1.0 - e.margin) * window.lower : (1.0 + e.margin) * window.upper;
+            report.value = best.verified->operating_point.omega;
+            report.text = std::string(e.below ? "omega below" : "omega above") +
+                          " the window of the motion of period " + std::to_string(e.intruder->period);
+            report.active = std::abs(report.value / report.limit - 1.0) <= activity;
+            const double multiplier = best.certificate.multipliers[static_cast<int>(design_.limits.size() + i)];
+            report.multiplier = multiplier * scale_ / report.limit;
+            result.limits.push_back(report);
+        }
+    }
+
     /// Bounds of design variables that the optimum presses on.
-    void add_active_bounds(OptimiseStudyResult& result, const Case& best, const DesignNlp& nlp) const {
+    void add_active_bounds(OptimiseStudyResult& result, const IntegerCase& best, const DesignNlp& nlp) const {
         const auto& variables = nlp.continuous();
         for (std::size_t j = 0; j < variables.size(); ++j) {
             const double unit = best.x[static_cast<int>(j)];
@@ -345,13 +433,17 @@ private:
     }
 
     const StudyProblem& problem_;
-    const design::Problem& design_;
+    design::Problem design_;
     Evaluator evaluator_;
     Evaluator tight_evaluator_;
     RowSink* rows_;
     const Observer& observer_;
     const StopRequest& stop_;
     double scale_ = 0.0;
+    std::vector<Counterexample> counterexamples_;
+    double unrefuted_ = design::absent;
+
+    static constexpr int most_rounds = 12;  ///< counterexamples in a row
 };
 
 }  // namespace

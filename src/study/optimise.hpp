@@ -24,6 +24,18 @@ struct IntegerCaseReport {
     std::string reason;  ///< for infeasible: the limit that cannot be met
 };
 
+/// A motion that refuted a design which was the best so far, and what became of it.
+struct Counterexample {
+    double layers = 0.0;  ///< value of the enumerated variable (NaN if none)
+    std::vector<std::pair<model::Key, double>> design;
+    double objective = design::absent;  ///< of the refuted design
+    int period = 0;                     ///< drive cycles, 0 for aperiodic motions
+    double peak_force = design::absent;
+    double window_lower = design::absent;  ///< drive frequencies between which the motion exists there [Hz]
+    double window_upper = design::absent;
+    std::string remedy;  ///< "operate below the window", "operate above the window" or why nothing could be done
+};
+
 struct OptimiseStudyResult {
     Ending ending = Ending::not_run;
     std::string status;                                 ///< optimal | infeasible | not-certified | budget
@@ -34,6 +46,8 @@ struct OptimiseStudyResult {
     double kkt_residual = design::absent;
     double objective_error = design::absent;
     std::vector<IntegerCaseReport> per_layers;
+    std::vector<Counterexample> counterexamples;  ///< single_stable sampled and refuted
+    double objective_unrefuted = design::absent;  ///< of the best design before the first counterexample
     long evaluations = 0;
     double seconds = 0.0;
 };

@@ -12,8 +12,7 @@ OrbitStudyResult run_orbit(const StudyProblem& problem, const OrbitStudy& study)
     OrbitStudyResult result;
     const design::Evaluator evaluator(problem.design);
     design::Demand demand;
-    const auto quantities = design::reported_quantities(problem.design.actuator.family);
-    demand.quantities.assign(quantities.begin(), quantities.end());
+    demand.quantities = quantities_to_report(problem.design);
     if (study.gradients) { demand.gradients = gradient_keys(problem.design); }
     demand.error_estimates = true;
     result.evaluation = evaluator.orbit(problem.design.actuator, study.start, study.period, demand);

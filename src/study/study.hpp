@@ -29,6 +29,14 @@ struct StudyProblem {
     int jobs = 1;
 };
 
+/// The problem as the engine sees it: with the study's seed and threads for what is sampled.
+inline design::Problem design_problem(const StudyProblem& problem) {
+    design::Problem design = problem.design;
+    design.sampling.seed = problem.seed;
+    design.sampling.jobs = problem.jobs;
+    return design;
+}
+
 /// Progress: called now and then with the share done (0..1, negative if unknown) and a short line. Returning is all
 /// that is asked of it.
 using Observer = std::function<void(double, std::string_view)>;

@@ -1,0 +1,301 @@
+#pragma once
+/// \file
+/// The Taylor integrator of flow/taylor.hpp for many starts of one system: as many motions as a vector has lanes
+/// advance together, each with its own phase, step and kind of contact, and a lane whose motion has ended takes the
+/// next start. A template over a model's lanes (model/membrane_lanes.hpp, model/spring_lanes.hpp).
+///
+/// Order, step and events follow the same rules as there. No lane ever reads another one and nothing depends on where
+/// a start sits, so its numbers are the same to the last bit in any company.
+
+#include "flow/flow.hpp"
+#include "flow/taylor.hpp"
+#include "numerics/lane_math.hpp"
+#include "numerics/polynomial_roots.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace percuss::flow {
+inline namespace PERCUSS_ISA {
+
+template <class Jets>
+class TaylorEnsemble {
+public:
+    static constexpr int lanes = Jets::lanes;
+    using V = typename Jets::V;
+    using Mask = numerics::LaneMask<lanes>;
+
+    /// parameters: as the model numbers them.
+    TaylorEnsemble(const double* parameters, Law law, int order)
+        : jets_(parameters),
+          law_(law),
+          order_(std::min(order, Jets::max_order)),
+          safety_(std::exp(-2.0 - 0.7 / (order_ - 1))) {}
+
+    void run(const EnsembleRequest& request, std::span<EnsembleMember> members) {
+        request_ = &request;
+        members_ = members;
+        seeks_events_ = request.stop == StopMode::hybrid && law_ != Law::none;
+        for (std::size_t i = 0; i < width; ++i) { take_next(i); }
+        while (busy_ > 0) {
+            jets_.expand(elapsed_ + request.theta, stiffness_, damping_, order_);
+            choose_steps();
+            locate_events();
+            jets_.advance(step_, order_);
+            elapsed_ += step_;
+            for (std::size_t i = 0; i < width; ++i) { settle(i); }
+        }
+    }
+
+private:
+    static constexpr auto width = static_cast<std::size_t>(lanes);
+
+    /// slack: inside the stop's zone with no force on it (no-tension law only).
+    enum class Phase : std::uint8_t { free, contact, slack };
+    enum class Event : std::uint8_t { none, entry, exit, release, reload, leave };
+
+    /// What a lane is busy with.
+    struct Lane {
+        EnsembleMember* member = nullptr;  ///< null: nothing
+        Phase phase = Phase::free;
+        Event event = Event::none;
+        bool deflate = false;
+        bool finished = false;
+        int events = 0;
+        long steps = 0;
+    };
+
+    void take_next(std::size_t i) {
+        Lane& lane = lane_[i];
+        lane = Lane{};
+        if (next_ == request_->states.size()) {
+            jets_.clear(i);
+            elapsed_.set(i, request_->duration);
+        } else {
+            const State& start = request_->states[next_];
+            lane.member = &members_[next_];
+            *lane.member = EnsembleMember{};
+            ++next_;
+            ++busy_;
+            std::array<double, Jets::states> y;
+            std::copy_n(start.begin(), y.size(), y.begin());
+            jets_.load(i, y);
+            elapsed_.set(i, 0.0);
+            lane.phase = first_phase(start);
+        }
+        show_phase(i);
+    }
+
+    [[nodiscard]] Phase first_phase(const State& start) const {
+        if (request_->stop == StopMode::held) { return Phase::contact; }
+        const double gap = start[0] - jets_.stop_position();
+        if (!seeks_events_ || !(gap > 0.0)) { return Phase::free; }
+        const double force = jets_.stop_stiffness() * gap + jets_.stop_damping() * start[1];
+        return law_ == Law::no_tension && force < 0.0 ? Phase::slack : Phase::contact;
+    }
+
+    /// Makes the vectors that depend on phase and deflation agree with them.
+    void show_phase(std::size_t i) {
+        const Lane& lane = lane_[i];
+        const bool touching = lane.phase == Phase::contact;
+        stiffness_.set(i, touching ? jets_.stop_stiffness() : 0.0);
+        damping_.set(i, touching ? jets_.stop_damping() : 0.0);
+        gap_sign_.set(i, lane.phase == Phase::free ? 1.0 : -1.0);
+        force_sign_.set(i, lane.phase == Phase::slack ? 1.0 : -1.0);
+        deflate_.set(i, lane.deflate);
+    }
+
+    /// Jorba and Zou (2005), section 3.2, with one scale for the whole state.
+    void choose_steps() {
+        // States are of order one by scaling; smaller ones are held to the same absolute tolerance.
+        const V scale = max(jets_.norm(0), numerics::all_lanes<lanes>(1.0));
+        const V last = jets_.norm(order_) / scale;
+        const V but_one = jets_.norm(order_ - 1) / scale;
+        const Mask sound = (last < 1e300) & (but_one < 1e300) & (scale < 1e6);
+        const V growth = max(log(but_one) * (1.0 / (order_ - 1)), log(last) * (1.0 / order_));
+        const V h = min(exp(-growth) * safety_, numerics::all_lanes<lanes>(3.0));
+        const V remaining = request_->duration - elapsed_;
+        const Mask more = h < remaining;
+        step_ = select(more, h, remaining);
+        const bool unsound = (~sound).any();
+        for (std::size_t i = 0; i < width; ++i) { lane_[i].finished = !more[i]; }
+        if (!unsound) { return; }
+        for (std::size_t i = 0; i < width; ++i) {
+            if (!sound[i] && lane_[i].member != nullptr) {
+                conclude(i, Status::diverged);
+                step_.set(i, 0.0);
+            }
+        }
+    }
+
+    /// The next event inside each step, if any, shortens it. Polynomial bounds, for all lanes at once, rule most out.
+    void locate_events() {
+        if (!seeks_events_) { return; }
+        Mask possible = may_change_sign(gap_sign_, false);
+        if (law_ == Law::no_tension) { possible = possible | may_change_sign(force_sign_, true); }
+        if (!possible.any()) { return; }
+        for (std::size_t i = 0; i < width; ++i) {
+            if (possible[i] && lane_[i].member != nullptr && lane_[i].member->status == Status::not_run) { locate(i); }
+        }
+    }
+
+    /// Whether the gap (or the stop's force) times `sign` may rise above zero inside the step: the sum of its value at
+    /// the start and of all positive terms at the end says no. In deflated lanes it starts at zero, and the linear term
+    /// is what must be outweighed.
+    [[nodiscard]] Mask may_change_sign(const V& sign, bool force) const {
+        V power = sign * step_;
+        const V zero{};
+        const V constant = sign * event_coefficients(force, 0);
+        const V linear = power * event_coefficients(force, 1);
+        V bound = select(deflate_, linear, constant + max(linear, zero));
+        for (int j = 2; j <= order_; ++j) {
+            power = power * step_;
+            bound += max(power * event_coefficients(force, j), zero);
+        }
+        return ~(bound < 0.0);
+    }
+    [[nodiscard]] PERCUSS_INLINE V event_coefficients(bool force, int j) const {
+        const V& x = jets_.x(j);
+        const V e = j == 0 ? x - jets_.stop_position() : x;
+        return force ? jets_.stop_stiffness() * e + jets_.stop_damping() * jets_.v(j) : e;
+    }
+
+    void locate(std::size_t i) {
+        switch (lane_[i].phase) {
+            case Phase::free: find(i, Event::entry, false, +1); break;
+            case Phase::contact:
+                if (law_ == Law::kelvin_voigt) {
+                    find(i, Event::exit, false, -1);
+                } else {
+                    find(i, Event::release, true, -1);
+                }
+                break;
+            case Phase::slack:
+                find(i, Event::leave, false, -1);
+                find(i, Event::reload, true, +1);
+                break;
+        }
+    }
+
+    /// Looks for the first sign change of the gap (or of the stop's force) towards `sign` in (0, step]. A function that
+    /// is zero at the start of the step is divided by t first.
+    __attribute__((noinline)) void find(std::size_t i, Event event, bool force, int sign) {
+        const Lane& lane = lane_[i];
+        const double h = step_[i];
+        double c[numerics::max_degree + 1];
+        double power = 1.0;
+        double bound = 0.0;
+        const int shift = lane.deflate ? 1 : 0;
+        const int degree = order_ - shift;
+        const double unit = static_cast<double>(sign);
+        for (int j = 0; j <= degree; ++j) {
+            c[j] = event_coefficient(i, force, j + shift) * power;
+            power *= h;
+            if (j > 0) { bound += std::max(0.0, unit * c[j]); }
+        }
+        const bool already = unit * c[0] >= 0.0;  // on the surface, or crossed by rounding, at the very start
+        if (already && unit * c[1] > 0.0 && !lane.deflate) { return accept(i, event, 0.0); }
+        if (unit * c[0] + bound < 0.0) { return; }
+        double t = 0.0;
+        if (numerics::first_sign_change(c, degree, sign, t)) { accept(i, event, t * h); }
+    }
+    [[nodiscard]] double event_coefficient(std::size_t i, bool force, int j) const {
+        const double x = jets_.x(j)[i];
+        const double e = j == 0 ? x - jets_.stop_position() : x;
+        return force ? jets_.stop_stiffness() * e + jets_.stop_damping() * jets_.v(j)[i] : e;
+    }
+
+    void accept(std::size_t i, Event event, double t) {
+        step_.set(i, t);
+        lane_[i].event = event;
+        lane_[i].finished = false;
+    }
+
+    /// After the step: what it ended at.
+    void settle(std::size_t i) {
+        Lane& lane = lane_[i];
+        if (lane.member == nullptr) { return; }
+        EnsembleMember& member = *lane.member;
+        if (member.status == Status::not_run) {
+            ++lane.steps;
+            if (lane.event == Event::none && !lane.deflate && !lane.finished && lane.steps < request_->max_steps) {
+                return;
+            }
+            lane.deflate = false;
+            Status status = Status::not_run;
+            if (lane.event != Event::none) {
+                if (!cross(i)) { status = Status::too_many_events; }
+            } else if (lane.finished) {
+                status = Status::ok;
+            }
+            lane.event = Event::none;
+            show_phase(i);
+            if (status == Status::not_run && lane.steps >= request_->max_steps) { status = Status::too_many_steps; }
+            if (status != Status::not_run) { conclude(i, status); }
+        }
+        if (member.status != Status::not_run) { take_next(i); }
+    }
+
+    /// Puts the state on the surface and changes phase. False: one event too many.
+    bool cross(std::size_t i) {
+        Lane& lane = lane_[i];
+        if (++lane.events > request_->max_events) { return false; }
+        const bool undamped = jets_.stop_damping() == 0.0;
+        switch (lane.event) {
+            case Event::entry:
+                jets_.set_position(i, jets_.stop_position());
+                lane.phase = Phase::contact;
+                lane.deflate = law_ == Law::kelvin_voigt || undamped;
+                ++lane.member->contacts;
+                break;
+            case Event::release:
+                lane.phase = Phase::slack;
+                if (undamped) { become_free(i); }
+                break;
+            case Event::reload:
+                lane.phase = Phase::contact;
+                ++lane.member->contacts;
+                break;
+            case Event::exit:
+            case Event::leave: become_free(i); break;
+            case Event::none: break;
+        }
+        return true;
+    }
+    void become_free(std::size_t i) {
+        jets_.set_position(i, jets_.stop_position());
+        lane_[i].phase = Phase::free;
+        lane_[i].deflate = true;
+    }
+
+    /// The motion of a lane ends here.
+    void conclude(std::size_t i, Status status) {
+        EnsembleMember& member = *lane_[i].member;
+        const auto y = jets_.unload(i);
+        std::copy(y.begin(), y.end(), member.state.begin());
+        member.status = status;
+        --busy_;
+    }
+
+    Jets jets_;
+    Law law_;
+    int order_;
+    double safety_;
+    const EnsembleRequest* request_ = nullptr;
+    std::span<EnsembleMember> members_;
+    std::size_t next_ = 0;  ///< start that no lane has taken yet
+    int busy_ = 0;
+    bool seeks_events_ = false;
+    std::array<Lane, width> lane_;
+    V elapsed_{}, step_{};
+    V stiffness_{}, damping_{};  ///< of the stop where it touches, zero elsewhere
+    V gap_sign_{}, force_sign_{};
+    Mask deflate_{};
+};
+
+}  // namespace PERCUSS_ISA
+}  // namespace percuss::flow
