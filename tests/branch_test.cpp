@@ -154,16 +154,24 @@ TEST_CASE("the hysteresis map of the defaults: one branch through both grazing p
 }
 
 TEST_CASE("the same map the other way round, and without the stop") {
-    const auto down = map_of(paper(), 4.0, 1.2);
-    const auto up = map_of(paper(), 1.2, 4.0);
-    const Branch& a = down.branches.at(0);
-    const Branch& b = up.branches.at(0);
-    check_consistency(b);
-    REQUIRE(a.boundaries.size() == b.boundaries.size());
-    for (std::size_t i = 0; i < a.boundaries.size(); ++i) {
-        const BoundaryPoint& there = b.boundaries[a.boundaries.size() - 1 - i];
-        CHECK(a.boundaries[i].kind == there.kind);
-        CHECK(a.boundaries[i].point.omega == relative(there.point.omega, 1e-11));
+    for (const auto law : {model::StopLaw::kelvin_voigt, model::StopLaw::no_tension}) {
+        study::StudyProblem problem = paper();
+        problem.design.actuator.law = law;
+        const auto down = map_of(problem, 4.0, 1.2);
+        const auto up = map_of(problem, 1.2, 4.0);
+        const Branch& a = down.branches.at(0);
+        const Branch& b = up.branches.at(0);
+        check_consistency(a);
+        check_consistency(b);
+        REQUIRE(a.boundaries.size() == b.boundaries.size());
+        for (std::size_t i = 0; i < a.boundaries.size(); ++i) {
+            const BoundaryPoint& there = b.boundaries[a.boundaries.size() - 1 - i];
+            CHECK(a.boundaries[i].kind == there.kind);
+            CHECK(a.boundaries[i].point.omega == relative(there.point.omega, 1e-11));
+        }
+        // Against a stop that cannot pull the branch turns back at the upper grazing point at once.
+        CHECK(a.boundaries[0].partner == 1);
+        CHECK(a.boundaries[0].point.omega == relative(reference::grazing_upper, 6e-12));
     }
     study::StudyProblem free = paper();
     free.design.actuator.law = model::StopLaw::none;

@@ -1,6 +1,7 @@
 // Boundaries followed in two parameters: published fold curves, the cusp where hysteresis ends, grazing and flip
 // curves.
 
+#include "design/families.hpp"
 #include "engine_cases.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
@@ -115,8 +116,8 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
     REQUIRE(up.curves.size() == 1);
     REQUIRE(up.curves[0].turns.size() == 1);
     CHECK(up.curves[0].turns[0].cusp);
-    CHECK(up.curves[0].turns[0].value == relative(cusp.value, 1e-7));
-    CHECK(up.curves[0].turns[0].omega == relative(cusp.omega, 1e-5));
+    CHECK(up.curves[0].turns[0].value == relative(cusp.value, 1e-10));
+    CHECK(up.curves[0].turns[0].omega == relative(cusp.omega, 1e-7));
     // Below the cusp nothing folds.
     const auto none = follow(problem, Kind::fold, Key::nd_voltage, 0.19, 0.15);
     CHECK(none.ending == study::Ending::infeasible);
@@ -165,6 +166,49 @@ TEST_CASE("a torus curve") {
     const LocusPoint& there = at_value(torus.curves[0], 0.023, 1.79);
     CHECK(there.omega == relative(on_main_branch(problem, Kind::torus, Key::nd_delta_a, 0.023, there.omega), 1e-9));
     CHECK(there.angle != 0.0);
+}
+
+TEST_CASE("families move their parameters as their directions say") {
+    model::Specification spec = test::shipped_problem("wu2022-actuator").design.actuator;
+    spec.set(Key::drive_frequency, 57.0);
+    const auto integrator = test::membranes();
+    const flow::System system{integrator.get(), model::scale(spec).parameters, nullptr};
+    CHECK(design::frequency_family(system).at(1.7).omega() == 1.7);
+    for (const Key key : {Key::moving_mass, Key::stop_gap, Key::drive_voltage, Key::prestretch, Key::outer_radius}) {
+        CAPTURE(model::key_info(key).name);
+        const double value = spec.value(key);
+        const flow::Family alone = design::key_family(system, spec, key, value);
+        const flow::Family both = design::frequency_and_key_family(system, spec, key, value);
+        CHECK(alone.dimension() == 1);
+        CHECK(both.dimension() == 2);
+        CHECK(both.units[1] == value);
+        const auto check = [&](const flow::Family& family, std::vector<double> p) {
+            const auto directions = family.directions(p);
+            REQUIRE(directions.size() == p.size());
+            for (std::size_t i = 0; i < p.size(); ++i) {
+                const auto numeric = test::ridders_many(
+                    [&](double amount) {
+                        std::vector<double> moved = p;
+                        moved[i] += amount;
+                        const flow::ParameterVector parameters = family.parameters(moved);
+                        return std::vector<double>(parameters.begin(), parameters.end());
+                    },
+                    flow::max_parameters, 1e-3 * p[i]);
+                for (std::size_t k = 0; k < numeric.size(); ++k) {
+                    CAPTURE(k);
+                    const double scale = (std::abs(system.parameters[k]) + 1.0) / p[i];
+                    CHECK(std::abs(directions[i][k] - numeric[k].value) < 1e-9 * scale);
+                }
+            }
+        };
+        check(alone, {value});
+        check(both, {1.8, 1.1 * value});
+        CHECK(both.at(std::vector<double>{1.8, value}).omega() == 1.8);
+    }
+    CHECK_THROWS_WITH_AS(design::key_family(system, spec, Key::nd_gap, 1.0), doctest::Contains("nondimensional.g"),
+                         std::invalid_argument);
+    CHECK(design::is_drive_frequency(Key::sm_omega));
+    CHECK_FALSE(design::is_drive_frequency(Key::stop_gap));
 }
 
 TEST_CASE("misuse and early ends") {

@@ -291,6 +291,7 @@ TEST_CASE("the walker starts along any direction, probes to both sides and follo
     int turns = 0;
     double length = 0.0;
     Vector last = walker.point();
+    Vector earlier = last;
     double slope = walker.tangent()[1];
     for (int i = 0; i < 1000 && (length < 1.0 || (walker.point() - before).norm() > 0.05); ++i) {
         REQUIRE(walker.advance());
@@ -299,13 +300,18 @@ TEST_CASE("the walker starts along any direction, probes to both sides and follo
         slope = walker.tangent()[1];
         length += (walker.point() - last).norm();
         last = walker.point();
-        if (i == 5) {  // back by one, half as far, and on
+        if (i == 5) {  // back by one, and no further; the next step is half as long
+            const double step = (last - earlier).norm();
             REQUIRE(walker.retreat());
+            CHECK((walker.point() - earlier).norm() == 0.0);
             CHECK_FALSE(walker.retreat());
-            length -= (walker.point() - last).norm();
+            REQUIRE(walker.advance());
+            CHECK((walker.point() - earlier).norm() == doctest::Approx(0.5 * step).epsilon(0.05));
+            length += (walker.point() - earlier).norm() - step;
             last = walker.point();
             slope = walker.tangent()[1];
         }
+        earlier = last;
     }
     CHECK(turns == 2);
     CHECK(length == doctest::Approx(4.8442).epsilon(0.03));  // circumference of the ellipse with axes 1 and 1/2

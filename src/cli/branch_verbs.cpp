@@ -10,6 +10,7 @@ namespace percuss::cli {
 
 int branch(const Arguments& arguments) {
     Session session(arguments, io::FrequencyUse::ranges);
+    io::require_branch_range(session.problem());
     study::BranchStudy study = session.problem().branch;
     study.gradients = arguments.gradients;
     session.start({"result.json", "report.html", "branch.csv", "boundaries.csv"});

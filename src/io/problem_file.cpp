@@ -1,5 +1,6 @@
 #include "io/problem_file.hpp"
 
+#include "design/families.hpp"
 #include "io/problem_error.hpp"
 #include "io/problem_sections.hpp"
 #include "io/resolved_settings.hpp"
@@ -87,6 +88,14 @@ void require_frequency(const ProblemFile& problem) {
         throw ProblemError(std::string(plain ? "nondimensional.omega" : "drive.frequency") +
                            " = edge: an orbit is computed at a given frequency, give one");
     }
+}
+
+void require_branch_range(const ProblemFile& problem) {
+    const study::BranchStudy& branch = problem.branch;
+    if (!branch.along || design::is_drive_frequency(*branch.along) || (branch.from && branch.to)) { return; }
+    throw ProblemError(std::string(branch.from ? "branch.to" : "branch.from") +
+                       " is missing: give both ends of the range of " +
+                       std::string(model::key_info(*branch.along).name));
 }
 
 void require_locus_range(const ProblemFile& problem) {

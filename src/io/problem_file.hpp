@@ -62,6 +62,8 @@ ProblemFile inspect_problem(const std::filesystem::path& file, std::span<const S
 /// Throw ProblemError when the problem lacks what a verb needs: a drive frequency; variables and one objective.
 void require_frequency(const ProblemFile& problem);
 void require_one_objective(const ProblemFile& problem);
+/// Both ends of the range, and for a locus the key.
+void require_branch_range(const ProblemFile& problem);
 void require_locus_range(const ProblemFile& problem);
 
 /// Number of entries of a state.
