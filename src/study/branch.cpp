@@ -22,7 +22,6 @@ namespace {
 
 using branch::BoundaryPoint;
 using branch::Branch;
-using branch::Departure;
 
 /// One study under way.
 class Map {

@@ -261,7 +261,7 @@ private:
         const DesignNlp nlp(evaluator_, c.fixed, scale_, nullptr);
         design::Demand demand;
         demand.quantities = {design_.objectives.front().quantity};
-        const design::Evaluation evaluation = sampled.evaluate(nlp.specification(c.x), demand);
+        design::Evaluation evaluation = sampled.evaluate(nlp.specification(c.x), demand);
         c.verified->uniqueness = evaluation.uniqueness;
         return evaluation;
     }

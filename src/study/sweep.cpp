@@ -12,13 +12,11 @@
 #include <cmath>
 #include <future>
 #include <mutex>
-#include <numbers>
 #include <stdexcept>
 
 namespace percuss::study {
 namespace {
 
-using std::numbers::pi;
 
 constexpr double default_from = 0.6;  // of the linear resonance
 constexpr double default_to = 2.0;
