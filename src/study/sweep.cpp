@@ -17,7 +17,6 @@
 namespace percuss::study {
 namespace {
 
-
 constexpr double default_from = 0.6;  // of the linear resonance
 constexpr double default_to = 2.0;
 
