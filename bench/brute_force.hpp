@@ -45,17 +45,15 @@ struct StartBox {
 };
 
 /// Of the dielectric elastomer actuator: with A the larger of gap and half the stroke, x from l/2 - 2 A to the stop, x'
-/// within 2 omega A, xi_I and xi_II where the stretch of their membrane stays while |x - l/2| <= 2 A.
+/// within 2 omega A, xi_I and xi_II from lambda_p to lambda_p sqrt(1 + (l/2 + 2 A)^2).
 inline StartBox start_box(const flow::ParameterVector& p, double half_stroke) {
     const double centre = 0.5 * p[model::membrane::length];
     const double gap = p[model::membrane::gap];
     const double reach = 2.0 * std::max(gap, half_stroke);
-    const double nearest = std::max(0.0, centre - reach);  // of the membrane to its flat shape
-    const double farthest = centre + reach;
     const double speed = reach * p[model::membrane::omega];
-    const auto stretch = [&](double u) { return p[model::membrane::lambda_p] * std::sqrt(1.0 + u * u); };
-    return {{centre - reach, -speed, stretch(nearest), stretch(nearest)},
-            {centre + gap, speed, stretch(farthest), stretch(farthest)}};
+    const double flat = p[model::membrane::lambda_p];
+    const double farthest = flat * std::hypot(1.0, centre + reach);
+    return {{centre - reach, -speed, flat, flat}, {centre + gap, speed, farthest, farthest}};
 }
 
 namespace brute_force {
