@@ -45,7 +45,7 @@ using model::Key;
 
 constexpr double budget = 20.0;
 constexpr long taylor_starts = 128;
-constexpr long erk_starts = 32;
+constexpr long erk_starts = 16;
 constexpr long erk_every = 13;
 constexpr long share_starts = 2048;
 
