@@ -174,6 +174,39 @@ TEST_CASE("orbits found in different places are told apart and put together") {
     CHECK(test::distance(known(three, 3, 1)->trap.points()[0], known(three, 3, 2)->trap.points()[0], 4) < 1e-9);
 }
 
+TEST_CASE("starts that come to rest on a stiff stop for a while are followed on") {
+    // 43 bounces and more in one drive cycle, then captured by the orbit of one contact.
+    const flow::ParameterVector p = {1.1,
+                                     1.0,
+                                     3.0,
+                                     2.0,
+                                     0.47977269636356429,
+                                     321.73079918240154,
+                                     0.8,
+                                     0.015738030666405039,
+                                     182971.47070625273,
+                                     5.1005538916301818,
+                                     0.17525032942320956,
+                                     7.0,
+                                     5.05094986034};
+    const auto integrator = test::membranes(model::StopLaw::no_tension);
+    const auto loose = test::membranes(model::StopLaw::no_tension, 1e-8);
+    const flow::System system{integrator.get(), p, nullptr};
+    const flow::System scout{loose.get(), p, nullptr};
+    const orbit::Orbit struck =
+        orbit::polish_orbit(system, {0.388683305148, -0.058715861610, 1.183740411669, 1.185843469999}, 1);
+    REQUIRE(struck.ok());
+    const flow::State bouncing = {0.40871791441221904, -0.067052746989810924, 1.1904021598637127, 1.1174580179251721};
+    Box box{bouncing, bouncing};
+    box.upper[0] += 1e-7;
+    EnsembleOptions options;
+    options.starts = 8;
+    options.max_cycles = 4000;
+    const auto answer = attractor::refute({system, scout}, struck, box, options);
+    CHECK(answer.unclassified == 0);
+    CHECK(answer.status == attractor::Refutation::Status::not_refuted);
+}
+
 TEST_CASE("the exponent of a periodic orbit is the logarithm of its multiplier") {
     const auto integrator = test::membranes();
     const struct {

@@ -1,5 +1,7 @@
 #include "attractor/block.hpp"
 
+#include "attractor/box.hpp"
+
 #include <algorithm>
 #include <limits>
 #include <numbers>
@@ -82,6 +84,7 @@ private:
         flow::EnsembleRequest request;
         request.states = states_;
         request.duration = 2.0 * pi;
+        request.max_events = most_contact_events;
         members_.assign(states_.size(), {});
         scout_.integrator->run_ensemble(scout_.parameters, request, members_);
         cost_.phase += request.duration * static_cast<double>(states_.size());

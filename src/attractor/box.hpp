@@ -8,6 +8,10 @@
 
 namespace percuss::attractor {
 
+/// Contact events in one drive cycle up to which motions are followed: on their way, those that come to rest on a stiff
+/// stop for a part of the cycle bounce some hundred times in it.
+inline constexpr int most_contact_events = 1024;
+
 /// An interval for every state; entries beyond the system's states are not looked at.
 struct Box {
     flow::State lower{};

@@ -1,5 +1,7 @@
 #include "attractor/exponent.hpp"
 
+#include "attractor/box.hpp"
+
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -21,6 +23,7 @@ public:
         for (int k = 0; k < states; ++k) { tangent_.state[index(k)] = 1.0 / std::sqrt(states); }
         request_.state = from;
         request_.duration = 2.0 * pi;
+        request_.max_events = most_contact_events;
         request_.observe = flow::observe_extrema | flow::observe_force;
         request_.directions = {&tangent_, 1};
     }
