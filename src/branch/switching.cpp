@@ -80,6 +80,15 @@ bool passes_through(const flow::Family& family, const Branch& branch, const Poin
         return seen.ok() && alike(seen.point, motion, size);
     };
     const std::vector<const Point*> way = points_and_turns(branch);
+    // Where it joins another branch it goes on a little beyond its last point, at a flip it begins before its first.
+    const auto beyond = [&](const Point& end, const Point& before) {
+        const double step = end.parameter - before.parameter;
+        return (p - end.parameter) * step > 0.0 && std::abs(p - end.parameter) < 2.0 * std::abs(step);
+    };
+    if (way.size() > 1) {
+        if (beyond(*way.front(), *way[1]) && is_it(way.front()->motion)) { return true; }
+        if (beyond(*way.back(), *way[way.size() - 2]) && is_it(way.back()->motion)) { return true; }
+    }
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
         const Point& a = *way[i];
         const Point& b = *way[i + 1];
