@@ -1,6 +1,7 @@
 // Branches of periodic motions: the hysteresis map of the defaults, published oscillators, isolas, branches along a
 // design variable.
 
+#include "branch/corner.hpp"
 #include "branch/switching.hpp"
 #include "branch/trace.hpp"
 #include "engine_cases.hpp"
@@ -211,6 +212,30 @@ TEST_CASE("points of the branch are the known orbits") {
         CHECK(test::distance(branch::state_at_zero(system, seen.point), known.state, 4) < 3e-12);
         CHECK(branch::passes_through(family, branch, seen.point, options.size));
     }
+    // So are motions beside a grazing point, in either form, and between a fold and the points next to it.
+    for (const double omega : {reference::grazing_upper + 1e-3, reference::grazing_upper + 1e-6}) {
+        const flow::System clear = base.at_omega(omega);
+        const auto settled = orbit::settle(clear, integrator->rest_state(clear.parameters), 60, flow::StopMode::off);
+        orbit::Motion motion;
+        motion.state = settled.value();
+        const auto free = orbit::solve(clear, motion);
+        REQUIRE(free.has_value());
+        const branch::Look seen = branch::look(family, *free, omega);
+        REQUIRE(seen.ok());
+        CHECK(branch::passes_through(family, branch, seen.point, options.size));
+    }
+    const BoundaryPoint& tip = nearest(branch, Kind::fold, reference::fold_upper);
+    for (const Point* side : {&branch.points[tip.after], &branch.points[tip.after + 1]}) {
+        const double omega = side->omega + 0.9 * (tip.point.omega - side->omega);
+        const numerics::Vector from = orbit::pack(base, tip.point.motion);
+        const numerics::Vector to = orbit::pack(base, side->motion);
+        const auto near =
+            orbit::solve(base.at_omega(omega), orbit::unpack(base, from + std::sqrt(0.1) * (to - from), side->motion));
+        REQUIRE(near.has_value());
+        const branch::Look seen = branch::look(family, *near, omega);
+        REQUIRE(seen.ok());
+        CHECK(branch::passes_through(family, branch, seen.point, options.size));
+    }
     // The motion of three cycles is on no branch of one.
     const test::ReferenceOrbit& third = test::reference_orbits[5];
     const flow::System system = base.at_omega(third.omega);
@@ -288,6 +313,24 @@ TEST_CASE("the motion of three cycles lives on an isola") {
         CHECK(isola.period == 3);
         CHECK(isola.end == End::closed);
         CHECK(isola.points.size() < 120);
+        CHECK(isola.points.back().parameter == isola.points.front().parameter);
+        CHECK(isola.points.back().peak_force == isola.points.front().peak_force);
+        // All the way round, whatever the place, a motion of the isola is known for one.
+        for (std::size_t i = 0; i + 1 < isola.points.size(); ++i) {
+            const Point& a = isola.points[i];
+            const Point& b = isola.points[i + 1];
+            CAPTURE(a.omega);
+            CAPTURE(b.omega);
+            if (a.motion.contacts() != b.motion.contacts()) { continue; }
+            const double omega = 0.3 * a.omega + 0.7 * b.omega;
+            const auto middle = orbit::solve(family.at(omega), a.motion);
+            if (!middle) { continue; }
+            const branch::Look seen = branch::look(family, *middle, omega);
+            // Not one beyond grazing, which is no motion.
+            if (seen.ok() && branch::contact_leaving(*middle) == branch::no_contact) {
+                CHECK(branch::passes_through(family, isola, seen.point, options.size));
+            }
+        }
         check_consistency(isola);
         CHECK(isola.boundaries.size() == 4);
         const BoundaryPoint& low = nearest(isola, Kind::grazing, 1.75);

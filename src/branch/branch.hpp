@@ -27,7 +27,7 @@ enum class End : std::uint8_t {
     not_run,
     range,   ///< left the range of the parameter
     joined,  ///< reached, at a flip or a grazing point, a branch of shorter period
-    closed,  ///< came back to its start: an isola
+    closed,  ///< came back to its start, which is also its last point: an isola
     lost,    ///< could not be followed further
     budget,  ///< as many points as were allowed, or stopped from outside
 };

@@ -23,6 +23,18 @@ Motion doubled(const Motion& motion) {
     return twice;
 }
 
+/// The points of a branch with its folds in their places, so that every parameter it passes lies between neighbours.
+std::vector<const Point*> points_and_turns(const Branch& branch) {
+    std::vector<const Point*> way;
+    for (std::size_t i = 0; i < branch.points.size(); ++i) {
+        way.push_back(&branch.points[i]);
+        for (const BoundaryPoint& found : branch.boundaries) {
+            if (found.after == i && found.kind == boundary::Kind::fold) { way.push_back(&found.point); }
+        }
+    }
+    return way;
+}
+
 bool alike(const Point& a, const Point& b, double size) {
     const auto near = [](double x, double y, double unit) { return std::abs(x - y) <= 1e-6 * unit; };
     return a.contacts.size() == b.contacts.size() && near(a.x_max, b.x_max, size) && near(a.x_min, b.x_min, size) &&
@@ -59,23 +71,41 @@ std::optional<Departure> departure_at_flip(const flow::Family& family, const Bou
 }
 
 bool passes_through(const flow::Family& family, const Branch& branch, const Point& motion, double size) {
-    for (std::size_t i = 0; i + 1 < branch.points.size(); ++i) {
-        const Point& a = branch.points[i];
-        const Point& b = branch.points[i + 1];
-        const double p = motion.parameter;
-        if ((a.parameter - p) * (b.parameter - p) > 0.0 || a.motion.form != b.motion.form ||
-            a.motion.contacts() != b.motion.contacts()) {
+    const double p = motion.parameter;
+    const flow::System system = family.at(p);
+    const auto is_it = [&](const Motion& guess) {
+        const auto solved = orbit::solve(system, guess);
+        if (!solved) { return false; }
+        const Look seen = look(family, *solved, p);
+        return seen.ok() && alike(seen.point, motion, size);
+    };
+    const std::vector<const Point*> way = points_and_turns(branch);
+    // Where it joins another branch it goes on a little beyond its last point, at a flip it begins before its first.
+    const auto beyond = [&](const Point& end, const Point& before) {
+        const double step = end.parameter - before.parameter;
+        return (p - end.parameter) * step > 0.0 && std::abs(p - end.parameter) < 2.0 * std::abs(step);
+    };
+    if (way.size() > 1) {
+        if (beyond(*way.front(), *way[1]) && is_it(way.front()->motion)) { return true; }
+        if (beyond(*way.back(), *way[way.size() - 2]) && is_it(way.back()->motion)) { return true; }
+    }
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+        const Point& a = *way[i];
+        const Point& b = *way[i + 1];
+        if ((a.parameter - p) * (b.parameter - p) > 0.0) { continue; }
+        if (a.motion.form != b.motion.form || a.motion.contacts() != b.motion.contacts()) {
+            // Around a grazing point: either form, from its own side.
+            if (is_it(a.motion) || is_it(b.motion)) { return true; }
             continue;
         }
-        const double way = b.parameter - a.parameter;
-        const double share = way != 0.0 ? (p - a.parameter) / way : 0.0;
+        const double between = b.parameter - a.parameter;
+        const double share = between != 0.0 ? (p - a.parameter) / between : 0.0;
         const Vector from = orbit::pack(family.base, a.motion);
         const Vector to = orbit::pack(family.base, b.motion);
-        const Motion guess = orbit::unpack(family.base, from + share * (to - from), a.motion);
-        const auto solved = orbit::solve(family.at(p), guess);
-        if (!solved) { continue; }
-        const Look seen = look(family, *solved, p);
-        if (seen.ok() && alike(seen.point, motion, size)) { return true; }
+        // Towards a fold the motion moves with the square root of the parameter.
+        for (const double s : {share, 1.0 - std::sqrt(1.0 - share), std::sqrt(share)}) {
+            if (is_it(orbit::unpack(family.base, from + s * (to - from), a.motion))) { return true; }
+        }
     }
     return false;
 }

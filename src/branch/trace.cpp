@@ -99,7 +99,7 @@ private:
         if (p < low || p > high) {
             end_at(p < low ? low : high);
         } else if (closes()) {
-            branch_.end = End::closed;
+            close();
         } else if (last_.point.motion.form == Form::strobed && ++strobed_points_ >= 4) {
             return_to_sequence();
         }
@@ -272,6 +272,16 @@ private:
                (b.parameter - a.parameter) * way_there > 0.0 && a.motion.form == b.motion.form &&
                std::abs(b.max_multiplier() - first.max_multiplier()) <
                    3.0 * std::abs(b.max_multiplier() - a.max_multiplier()) + 1e-3;
+    }
+
+    /// The first point becomes the last as well.
+    void close() {
+        auto& points = branch_.points;
+        const double way_there = points[1].parameter - points[0].parameter;
+        const bool passed = (points.back().parameter - points[0].parameter) * way_there >= 0.0;
+        if (passed) { points.pop_back(); }
+        points.push_back(Point(points.front()));
+        branch_.end = End::closed;
     }
 
     /// A fold within 1e-6 of a grazing point is one physical jump with it, also where a torus or flip lies in between.
