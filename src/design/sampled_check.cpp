@@ -60,6 +60,10 @@ TierTwo check_tier_two(const SampledCase& c) {
                         model::number_text(100.0 * u.missed_share_bound, 3) + " % of it";
             break;
         case Status::refuted: {
+            if (answer.other->kind == attractor::Kind::undecided) {
+                u.checked = "tier 2: among " + starts + " one led to an aperiodic motion that may be a long transient";
+                break;
+            }
             u.verdict = Verdict::not_unique;
             u.attractors = list_others(c, systems, box, options);
             // Newton's method can meet a stable orbit that none of the starts leads to.

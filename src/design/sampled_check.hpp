@@ -23,7 +23,7 @@ struct SampledCase {
 /// Uniform starts over the box of attractor/box.hpp, each followed until it is captured (attractor/ensemble.hpp). None
 /// of N elsewhere: verdict unique, which means not refuted; other basins then hold less than missed_share_bound of the
 /// box at 95 % confidence. One elsewhere: not_unique, with every motion that the N starts lead to and its share. Starts
-/// that could not be classified leave it not_checked.
+/// that could not be classified, or a motion whose kind is undecided, leave it not_checked.
 struct TierTwo {
     Uniqueness uniqueness;
     std::string rejection;  ///< empty unless not_unique
