@@ -50,15 +50,7 @@ Motion without(const flow::System& system, const Motion& motion, int contact, co
     orbit.state = near.state;
     rest.state = orbit::state_at_zero(system, orbit);
     rest.phase = 0.0;
-    if (motion.period == 1) {
-        orbit::ReturnMap half;
-        half.stop = flow::StopMode::off;
-        half.mirrored = true;
-        const orbit::Image image = orbit::apply(system, half, rest.state, orbit::Differentiate::nothing);
-        rest.mirrored =
-            image.ok() && (orbit::to_vector(system, image.state) - orbit::to_vector(system, rest.state)).norm() < 1e-6;
-    }
-    return rest;
+    return orbit::halved_if_symmetric(system, rest);
 }
 
 /// The way along the branch on which the motion has the contacts of its form and no other.

@@ -134,7 +134,7 @@ private:
         const auto corner = leave_contact(family_, *piece_, last_, contact, options_);
         branch_.solves += 2;
         if (!corner) { return try_shorter("the grazing point where a contact ends could not be located"); }
-        if (corner->near.point.parameter != 0.0) { note_boundaries(last_, corner->near); }
+        note_boundaries(last_, corner->near);
         pass(*corner);
     }
 
@@ -164,7 +164,7 @@ private:
             branch_.end = End::joined;
             return;
         }
-        piece_ = std::make_unique<Piece>(family_, corner.onward.motion, options_.size, options_.steps);
+        renew_piece(corner.onward.motion);
         const bool started =
             leaving ? piece_->start(corner.onward.motion, corner.onward.parameter, corner.onward.direction)
                     : piece_->start_with_speed(corner.onward.motion, corner.onward.parameter, corner.entering_contact);

@@ -1,4 +1,3 @@
-#include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
 #include "cli/session.hpp"
 #include "cli/stopping.hpp"
@@ -22,10 +21,7 @@ int attractors(const Arguments& arguments) {
     const auto presentation = io::present_attractors(problem, result);
     session.start({"result.json", "report.html", "attractors.csv"});
     session.write("attractors.csv", io::attractors_csv(problem, result));
-    session.write_results(document, presentation);
-    session.finish(result.ending);
-    print(arguments.json ? document : io::plain_text(presentation));
-    return exit_code(result.ending);
+    return session.conclude(result.ending, document, presentation);
 }
 
 }  // namespace percuss::cli

@@ -1,6 +1,5 @@
 #include "cli/verbs.hpp"
 
-#include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
 #include "cli/session.hpp"
 #include "cli/stopping.hpp"
@@ -27,10 +26,7 @@ int branch(const Arguments& arguments) {
     const auto presentation = io::present_branch(problem, result);
     session.write("branch.csv", io::branch_csv(problem, result));
     session.write("boundaries.csv", io::boundaries_csv(problem, result));
-    session.write_results(document, presentation);
-    session.finish(result.ending);
-    print(arguments.json ? document : io::plain_text(presentation));
-    return exit_code(result.ending);
+    return session.conclude(result.ending, document, presentation);
 }
 
 int locus(const Arguments& arguments) {
@@ -49,10 +45,7 @@ int locus(const Arguments& arguments) {
     const std::string document = io::locus_document(problem, result);
     const auto presentation = io::present_locus(problem, result);
     session.write("locus.csv", io::locus_csv(problem, result));
-    session.write_results(document, presentation);
-    session.finish(result.ending);
-    print(arguments.json ? document : io::plain_text(presentation));
-    return exit_code(result.ending);
+    return session.conclude(result.ending, document, presentation);
 }
 
 }  // namespace percuss::cli

@@ -28,7 +28,8 @@ void print(const std::string& text) {
 
 Session::Session(const Arguments& arguments, io::FrequencyUse use)
     : problem_(io::read_problem(arguments.problem, arguments.keys, use)),
-      quiet_(arguments.quiet) {
+      quiet_(arguments.quiet),
+      json_(arguments.json) {
     study::StudyProblem& study = problem_.study;
     study.seed = arguments.seed.value_or(study.seed);
     study.jobs = arguments.jobs.value_or(study.jobs);
@@ -52,9 +53,12 @@ std::unique_ptr<study::RowSink> Session::table(const std::string& name) const {
     return folder_ ? folder_->table(name) : nullptr;
 }
 
-void Session::write_results(const std::string& document, const io::Presentation& presentation) const {
+int Session::conclude(study::Ending ending, const std::string& document, const io::Presentation& presentation) {
     write("result.json", document);
     if (folder_) { write("report.html", io::report_page(presentation, problem_, record_.instruction_set)); }
+    finish(ending);
+    print(json_ ? document : io::plain_text(presentation));
+    return exit_code(ending);
 }
 
 void Session::finish(study::Ending ending) {

@@ -29,14 +29,16 @@ public:
     void write(const std::string& name, const std::string& content) const;
     /// A table in the results folder; null when nothing is written.
     [[nodiscard]] std::unique_ptr<study::RowSink> table(const std::string& name) const;
-    /// result.json and report.html.
-    void write_results(const std::string& document, const io::Presentation& presentation) const;
-    /// Closes the folder and tells where it is.
-    void finish(study::Ending ending);
+    /// The end of every verb: writes result.json and report.html, closes the folder and tells where it is, prints the
+    /// document or the presentation. Returns the exit code.
+    int conclude(study::Ending ending, const std::string& document, const io::Presentation& presentation);
 
 private:
+    void finish(study::Ending ending);
+
     io::ProblemFile problem_;
     bool quiet_;
+    bool json_;
     io::RunRecord record_;
     std::unique_ptr<io::ResultFolder> folder_;
 };

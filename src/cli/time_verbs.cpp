@@ -1,6 +1,5 @@
 #include "cli/verbs.hpp"
 
-#include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
 #include "cli/session.hpp"
 #include "cli/stopping.hpp"
@@ -29,10 +28,7 @@ int simulate(const Arguments& arguments) {
 
     const std::string document = io::simulate_document(session.problem(), result);
     const auto presentation = io::present_simulation(session.problem(), result);
-    session.write_results(document, presentation);
-    session.finish(result.ending);
-    print(arguments.json ? document : io::plain_text(presentation));
-    return exit_code(result.ending);
+    return session.conclude(result.ending, document, presentation);
 }
 
 int sweep(const Arguments& arguments) {
@@ -49,10 +45,7 @@ int sweep(const Arguments& arguments) {
 
     const std::string document = io::sweep_document(session.problem(), result);
     const auto presentation = io::present_sweep(session.problem(), result);
-    session.write_results(document, presentation);
-    session.finish(result.ending);
-    print(arguments.json ? document : io::plain_text(presentation));
-    return exit_code(result.ending);
+    return session.conclude(result.ending, document, presentation);
 }
 
 }  // namespace percuss::cli

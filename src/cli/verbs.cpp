@@ -22,13 +22,11 @@ std::vector<std::string> files_of_evaluation(bool gradients) {
 }
 
 /// Writes what evaluate and orbit have in common.
-void store_evaluation(Session& session, const io::Presentation& presentation, const std::string& document,
-                      const design::Evaluation& evaluation, bool gradients) {
+void store_evaluation(Session& session, const design::Evaluation& evaluation, bool gradients) {
     session.start(files_of_evaluation(gradients));
     const io::ProblemFile& problem = session.problem();
     session.write("quantities.csv", io::quantities_csv(problem, io::design_values(problem.study.design), evaluation));
     if (gradients) { session.write("gradients.csv", io::gradients_csv(problem, evaluation)); }
-    session.write_results(document, presentation);
 }
 
 }  // namespace
@@ -51,10 +49,8 @@ int orbit(const Arguments& arguments) {
 
     const std::string document = io::orbit_document(session.problem(), result);
     const auto presentation = io::present_orbit(session.problem(), result);
-    store_evaluation(session, presentation, document, result.evaluation, arguments.gradients);
-    session.finish(result.ending);
-    print(arguments.json ? document : io::plain_text(presentation));
-    return exit_code(result.ending);
+    store_evaluation(session, result.evaluation, arguments.gradients);
+    return session.conclude(result.ending, document, presentation);
 }
 
 int evaluate(const Arguments& arguments) {
@@ -63,10 +59,8 @@ int evaluate(const Arguments& arguments) {
 
     const std::string document = io::evaluate_document(session.problem(), result);
     const auto presentation = io::present_evaluation(session.problem(), result);
-    store_evaluation(session, presentation, document, result.evaluation, arguments.gradients);
-    session.finish(result.ending);
-    print(arguments.json ? document : io::plain_text(presentation));
-    return exit_code(result.ending);
+    store_evaluation(session, result.evaluation, arguments.gradients);
+    return session.conclude(result.ending, document, presentation);
 }
 
 int optimise(const Arguments& arguments) {
@@ -90,10 +84,7 @@ int optimise(const Arguments& arguments) {
     session.write("gradients.csv", io::gradients_csv(problem, result.best));
     session.write("layers.csv", io::layers_csv(problem, result));
     session.write("limits.csv", io::limits_csv(problem, result));
-    session.write_results(document, presentation);
-    session.finish(result.ending);
-    print(arguments.json ? document : io::plain_text(presentation));
-    return exit_code(result.ending);
+    return session.conclude(result.ending, document, presentation);
 }
 
 }  // namespace percuss::cli

@@ -37,10 +37,6 @@ public:
     }
 
 private:
-    [[nodiscard]] double size() const {
-        return std::max(c_.system.stop_position() - c_.system.integrator->centre(c_.system.parameters), 1e-3);
-    }
-
     /// The first boundary on either side at which the motion ceases to be stable or to strike.
     void follow_branch() {
         const flow::Family family = frequency_family(c_.system);
@@ -49,7 +45,7 @@ private:
             branch::TraceOptions options;
             options.from = omega * range_below;
             options.to = omega * range_above;
-            options.size = size();
+            options.size = motion_size(c_.system);
             options.max_points = 400;
             const branch::Branch traced =
                 branch::trace(family, {orbit::motion_of(c_.system, c_.orbit), omega, up ? 1.0 : -1.0, {}}, options);
@@ -74,7 +70,8 @@ private:
              const std::string& reason) const {
         const flow::System there = c_.system.at_omega(omega);
         const flow::Family family = frequency_family(there);
-        const auto exact = boundary::solve_critical(family, kind, motion, omega, contact, angle, size(), c_.directions);
+        const auto exact = boundary::solve_critical(family, kind, motion, omega, contact, angle, motion_size(c_.system),
+                                                    c_.directions);
         end.found = true;
         end.omega = exact.ok() ? exact.parameter : omega;
         end.d_omega = exact.d_parameter;

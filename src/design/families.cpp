@@ -28,6 +28,10 @@ void require_key(const Specification& spec, Key key) {
 
 bool is_drive_frequency(Key key) { return key == Key::drive_frequency || key == Key::nd_omega || key == Key::sm_omega; }
 
+double motion_size(const flow::System& system) {
+    return std::max(system.stop_position() - system.integrator->centre(system.parameters), 1e-3);
+}
+
 flow::Family frequency_family(const flow::System& system) {
     return flow::along_frequency(system, system.integrator->linear_resonance(system.parameters));
 }

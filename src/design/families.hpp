@@ -10,6 +10,9 @@ namespace percuss::design {
 /// Whether a key sets the drive frequency.
 bool is_drive_frequency(model::Key key);
 
+/// What counts as order one in the displacement of motions that reach the stop: the gap.
+double motion_size(const flow::System& system);
+
 /// omega, nondimensional, with everything else as in `system`.
 flow::Family frequency_family(const flow::System& system);
 

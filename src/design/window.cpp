@@ -23,10 +23,6 @@ constexpr double first_step = 0.125;
 constexpr double bold_distance = 0.05;  ///< a design so near is tried in one step
 constexpr double smallest_step = 1.0 / 1024.0;
 
-double size_of(const flow::System& system) {
-    return std::max(system.stop_position() - system.integrator->centre(system.parameters), 1e-3);
-}
-
 WindowEnd end_from(const branch::BoundaryPoint& found) {
     return {found.kind, found.point.motion, found.contact, found.angle, found.point.parameter};
 }
@@ -68,7 +64,7 @@ boundary::CriticalPoint solve_end(const flow::System& system, const Specificatio
         directions.back()[omega] = 0.0;
     }
     return boundary::solve_critical(family, guess.kind, guess.motion, guess.omega, guess.contact, guess.angle,
-                                    size_of(here), directions);
+                                    motion_size(here), directions);
 }
 
 /// Both ends on their way from one design to another, at share `at` of it.
@@ -125,7 +121,7 @@ Intruder find_window(const flow::System& system, const Specification& design, co
     branch::TraceOptions options;
     options.from = range_below * system.omega();
     options.to = range_above * system.omega();
-    options.size = size_of(system);
+    options.size = motion_size(system);
     options.max_points = 4000;
     const flow::Family family = frequency_family(system);
     const branch::Branch branch =
@@ -141,15 +137,12 @@ Intruder find_window(const flow::System& system, const Specification& design, co
     intruder.highest = end_from(*highest);
     intruder.lower = end_from(grazing_beside(branch, *lowest));
     intruder.upper = end_from(grazing_beside(branch, *highest));
-    const auto spans = [&](double omega) {
-        return std::any_of(branch.points.begin(), branch.points.end(), [&](const branch::Point& p) {
-            return omega > 1.0 ? p.parameter > intruder.upper.omega * (1.0 + 2e-5)
-                               : p.parameter < intruder.lower.omega * (1.0 - 2e-5);
-        });
+    const auto beyond_an_end = [&](const branch::Point& p) {
+        return p.parameter > intruder.upper.omega * (1.0 + 2e-5) || p.parameter < intruder.lower.omega * (1.0 - 2e-5);
     };
     if (!(intruder.lower.omega < system.omega() && system.omega() < intruder.upper.omega)) {
         intruder.trouble = "the window of the motion does not contain the frequency it was met at";
-    } else if (spans(2.0) || spans(0.0)) {
+    } else if (std::any_of(branch.points.begin(), branch.points.end(), beyond_an_end)) {
         intruder.trouble = "the branch of the motion does not end in a fold or grazing point on both sides";
     }
     intruder.ok = intruder.trouble.empty();

@@ -164,6 +164,14 @@ std::optional<Orbit> strobe(const flow::System& system, const Motion& motion) {
     return orbit;
 }
 
+Motion halved_if_symmetric(const flow::System& system, const Motion& motion) {
+    if (motion.form != Form::free || motion.period != 1) { return motion; }
+    Motion half = motion;
+    half.mirrored = true;
+    const auto r = shoot(system, half, {});
+    return r && r->value.norm() < 1e-6 ? half : motion;
+}
+
 Motion motion_of(const flow::System& system, const Orbit& orbit) {
     Motion motion;
     motion.period = orbit.map.period;

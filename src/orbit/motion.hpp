@@ -53,6 +53,10 @@ std::optional<Motion> solve(const flow::System& system, const Motion& guess);
 /// set. Empty when the flow failed.
 std::optional<Orbit> strobe(const flow::System& system, const Motion& motion);
 
+/// A motion of free form and one drive cycle that has the mirror symmetry, to be followed over half a cycle; any other
+/// motion as it is.
+Motion halved_if_symmetric(const flow::System& system, const Motion& motion);
+
 /// The best form for an orbit: free without contacts, else its sequence, or strobed where a contact is open.
 Motion motion_of(const flow::System& system, const Orbit& orbit);
 

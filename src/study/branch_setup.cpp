@@ -85,8 +85,7 @@ BranchSetup::BranchSetup(const StudyProblem& p, const BranchStudy& study)
     }
     scout = system;
     scout.integrator = scene.scout.get();
-    const double gap = system.stop_position() - system.integrator->centre(system.parameters);
-    size = has_stop ? std::max(gap, 1e-3) : 1.0;
+    size = has_stop ? design::motion_size(system) : 1.0;
 }
 
 double BranchSetup::to_omega(double user) const { return user / unit_in_user(frequency_key(specification), scales); }
@@ -107,13 +106,9 @@ std::optional<branch::Departure> BranchSetup::departure() const {
     if (!reached.orbit.ok()) { return std::nullopt; }
     departure.motion = orbit::motion_of(there, reached.orbit);
     if (departure.motion.form == orbit::Form::free) {
-        // A free motion that has the mirror symmetry is followed over half a cycle.
-        orbit::Motion half = departure.motion;
-        half.mirrored = true;
-        half.phase = 0.0;
-        half.state = orbit::state_at_zero(there, reached.orbit);
-        const auto r = orbit::shoot(there, half, {});
-        if (r && r->value.norm() < 1e-6) { departure.motion = half; }
+        departure.motion.phase = 0.0;
+        departure.motion.state = orbit::state_at_zero(there, reached.orbit);
+        departure.motion = orbit::halved_if_symmetric(there, departure.motion);
     }
     return departure;
 }
