@@ -74,7 +74,8 @@ std::optional<Matrix> along(const flow::System& system, const Motion& motion, co
 
 }  // namespace
 
-CriticalEquations::CriticalEquations(const flow::Family& family, Kind kind, Motion like, int contact, double size)
+CriticalEquations::CriticalEquations(const flow::ParameterFamily& family, Kind kind, Motion like, int contact,
+                                     double size)
     : family_(family),
       kind_(kind),
       like_(std::move(like)),
@@ -177,8 +178,9 @@ bool CriticalEquations::add_multiplier_test(const Vector& u, const flow::System&
     return true;
 }
 
-CriticalPoint solve_critical(const flow::Family& family, Kind kind, const Motion& guess, double parameter, int contact,
-                             double angle, double size, std::span<const flow::ParameterVector> directions) {
+CriticalPoint solve_critical(const flow::ParameterFamily& family, Kind kind, const Motion& guess, double parameter,
+                             int contact, double angle, double size,
+                             std::span<const flow::ParameterVector> directions) {
     CriticalPoint point;
     point.kind = kind;
     point.status = SolveStatus::no_convergence;

@@ -13,7 +13,7 @@
 ///   grazing: the entry speed of one contact is zero.
 
 #include "boundary/boundary.hpp"
-#include "flow/family.hpp"
+#include "flow/parameter_family.hpp"
 #include "orbit/motion.hpp"
 
 #include <span>
@@ -25,7 +25,7 @@ class CriticalEquations {
 public:
     /// like: form of the motion. contact: grazing only, which contact of the sequence touches. size: of the motion, for
     /// the scaling of the unknowns.
-    CriticalEquations(const flow::Family& family, Kind kind, orbit::Motion like, int contact, double size);
+    CriticalEquations(const flow::ParameterFamily& family, Kind kind, orbit::Motion like, int contact, double size);
 
     /// Unknowns u = (z, [phi], p), each in its unit.
     [[nodiscard]] numerics::Vector pack(const orbit::Motion& motion, double angle, std::span<const double> p) const;
@@ -43,7 +43,7 @@ private:
                              std::span<const flow::ParameterVector> directions, const orbit::SequenceResidual& r,
                              numerics::Vector& f, numerics::Matrix& jacobian) const;
 
-    const flow::Family& family_;
+    const flow::ParameterFamily& family_;
     Kind kind_;
     orbit::Motion like_;
     int contact_;
@@ -63,8 +63,8 @@ struct CriticalPoint {
 };
 
 /// Newton on the equations with one parameter free. angle: torus only, a guess for the multiplier's argument.
-CriticalPoint solve_critical(const flow::Family& family, Kind kind, const orbit::Motion& guess, double parameter,
-                             int contact, double angle, double size,
+CriticalPoint solve_critical(const flow::ParameterFamily& family, Kind kind, const orbit::Motion& guess,
+                             double parameter, int contact, double angle, double size,
                              std::span<const flow::ParameterVector> directions = {});
 
 }  // namespace percuss::boundary

@@ -17,7 +17,7 @@ using numerics::Vector;
 
 class Follower {
 public:
-    Follower(const flow::Family& family, const BoundaryPoint& start, const LocusOptions& options)
+    Follower(const flow::ParameterFamily& family, const BoundaryPoint& start, const LocusOptions& options)
         : family_(family),
           options_(options),
           start_(start),
@@ -135,7 +135,7 @@ private:
         const double va = equations_.parameters(a)[1];
         const double vb = equations_.parameters(b)[1];
         const Vector guess = a + (value - va) / (vb - va) * (b - a);
-        flow::Family by_omega;
+        flow::ParameterFamily by_omega;
         by_omega.base = family_.base;
         by_omega.units = {family_.units.front()};
         by_omega.parameters = [this, value](std::span<const double> p) {
@@ -165,7 +165,7 @@ private:
 
     void add_point(const orbit::Motion& motion, double omega, double value, double angle) {
         ++locus_.solves;
-        const flow::Family fixed = flow::along_frequency(
+        const flow::ParameterFamily fixed = flow::along_frequency(
             family_.base.with(family_.parameters(std::array<double, 2>{omega, value})), family_.units.front());
         const Look seen = look(fixed, motion, omega);
         const double force = start_.kind == Kind::grazing && motion.contacts() == 1 ? 0.0 : seen.point.peak_force;
@@ -174,7 +174,7 @@ private:
 
     static constexpr double shortest_step = 1e-7;
 
-    const flow::Family& family_;
+    const flow::ParameterFamily& family_;
     const LocusOptions& options_;
     const BoundaryPoint& start_;
     CriticalEquations equations_;
@@ -184,7 +184,7 @@ private:
 
 }  // namespace
 
-Locus follow_boundary(const flow::Family& family, const BoundaryPoint& start, const LocusOptions& options) {
+Locus follow_boundary(const flow::ParameterFamily& family, const BoundaryPoint& start, const LocusOptions& options) {
     return Follower(family, start, options).run();
 }
 

@@ -39,7 +39,7 @@ public:
 private:
     /// The first boundary on either side at which the motion ceases to be stable or to strike.
     void follow_branch() {
-        const flow::Family family = frequency_family(c_.system);
+        const flow::ParameterFamily family = frequency_family(c_.system);
         const double omega = c_.system.omega();
         for (const bool up : {false, true}) {
             branch::TraceOptions options;
@@ -69,7 +69,7 @@ private:
     void set(BandEnd& end, Kind kind, const orbit::Motion& motion, int contact, double angle, double omega,
              const std::string& reason) const {
         const flow::System there = c_.system.at_omega(omega);
-        const flow::Family family = frequency_family(there);
+        const flow::ParameterFamily family = frequency_family(there);
         const auto exact = boundary::solve_critical(family, kind, motion, omega, contact, angle, motion_size(c_.system),
                                                     c_.directions);
         end.found = true;

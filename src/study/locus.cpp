@@ -88,8 +88,8 @@ LocusStudyResult run_locus(const StudyProblem& problem, const LocusStudy& study,
     const branch::Branch main = branch::trace(setup.family, *departure, trace_options);
     result.solves += main.solves;
 
-    const flow::Family family = design::frequency_and_key_family(setup.system, setup.specification, *study.along,
-                                                                 std::abs(result.to - result.from));
+    const flow::ParameterFamily family = design::frequency_and_key_family(
+        setup.system, setup.specification, *study.along, std::abs(result.to - result.from));
     branch::LocusOptions options;
     options.from = result.from;
     options.to = result.to;
