@@ -5,8 +5,8 @@
 #include "engine_cases.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
-#include "study/branch.hpp"
-#include "study/locus.hpp"
+#include "verbs/branch/branch.hpp"
+#include "verbs/locus/locus.hpp"
 
 #include <doctest/doctest.h>
 
@@ -22,15 +22,15 @@ using test::relative;
 
 namespace {
 
-study::LocusStudyResult follow(const study::StudyProblem& problem, Kind kind, Key along, double from, double to,
-                               int steps = 25) {
-    study::LocusStudy study;
+verbs::LocusResult follow(const verbs::StudyProblem& problem, Kind kind, Key along, double from, double to,
+                          int steps = 25) {
+    verbs::LocusOptions study;
     study.kind = kind;
     study.along = along;
     study.from = from;
     study.to = to;
     study.steps = steps;
-    return study::run_locus(problem, study, {}, {});
+    return verbs::run_locus(problem, study, {}, {});
 }
 
 /// The point of a curve at a value of the key nearest to a frequency.
@@ -45,12 +45,12 @@ const LocusPoint& at_value(const Locus& curve, double value, double omega) {
 }
 
 /// The boundary of this kind nearest to omega on the main branch.
-double on_main_branch(study::StudyProblem problem, Kind kind, Key key, double value, double omega) {
+double on_main_branch(verbs::StudyProblem problem, Kind kind, Key key, double value, double omega) {
     problem.design.actuator.set(key, value);
-    study::BranchStudy study;
+    verbs::BranchOptions study;
     study.from = 2.0 * omega;
     study.to = 0.6 * omega;
-    const auto map = study::run_branch(problem, study, {}, {});
+    const auto map = verbs::run_branch(problem, study, {}, {});
     double best = 1e300;
     for (const auto& found : map.branches.at(0).boundaries) {
         if (found.kind == kind && std::abs(found.point.omega - omega) < std::abs(best - omega)) {
@@ -65,7 +65,7 @@ double on_main_branch(study::StudyProblem problem, Kind kind, Key key, double va
 TEST_CASE("the published fold curve of the soft stop") {
     const auto problem = test::shipped_problem("soft-impact");
     const auto result = follow(problem, Kind::fold, Key::sm_force, test::soft_impact::parameters[3], 0.5, 35);
-    CHECK(result.ending == study::Ending::verified);
+    CHECK(result.ending == verbs::Ending::verified);
     REQUIRE(result.curves.size() == 2);  // the fold beside grazing, and the one far up
     const Locus& upper = result.curves[1];
     CHECK(upper.turns.empty());
@@ -87,7 +87,7 @@ TEST_CASE("the published fold curve of the soft stop") {
 TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from either side") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
     const auto down = follow(problem, Kind::fold, Key::nd_voltage, 0.5, 0.15);
-    CHECK(down.ending == study::Ending::verified);
+    CHECK(down.ending == verbs::Ending::verified);
     REQUIRE(down.curves.size() == 1);  // the second fold is the end of the first one's curve
     const Locus& curve = down.curves[0];
     CHECK(curve.end == branch::End::range);
@@ -120,7 +120,7 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
     CHECK(up.curves[0].turns[0].omega == relative(cusp.omega, 1e-7));
     // Below the cusp nothing folds.
     const auto none = follow(problem, Kind::fold, Key::nd_voltage, 0.19, 0.15);
-    CHECK(none.ending == study::Ending::infeasible);
+    CHECK(none.ending == verbs::Ending::infeasible);
     CHECK(none.curves.empty());
     CHECK_FALSE(none.reason.empty());
 }
@@ -128,7 +128,7 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
 TEST_CASE("grazing and flip curves lie where the branches have them") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
     const auto grazing = follow(problem, Kind::grazing, Key::nd_gap, 0.1, 0.2, 10);
-    CHECK(grazing.ending == study::Ending::verified);
+    CHECK(grazing.ending == verbs::Ending::verified);
     REQUIRE(!grazing.curves.empty());
     for (const auto& gap : {0.12, 0.15}) {
         const double omega = at_value(grazing.curves[0], gap, 1.9).omega;
@@ -161,7 +161,7 @@ TEST_CASE("a torus curve") {
     spec.set(Key::nd_delta_a, 0.022);
     spec.set(Key::nd_delta_b, 390.0);
     const auto torus = follow(problem, Kind::torus, Key::nd_delta_a, 0.022, 0.024, 10);
-    CHECK(torus.ending == study::Ending::verified);
+    CHECK(torus.ending == verbs::Ending::verified);
     REQUIRE(!torus.curves.empty());
     const LocusPoint& there = at_value(torus.curves[0], 0.023, 1.79);
     CHECK(there.omega == relative(on_main_branch(problem, Kind::torus, Key::nd_delta_a, 0.023, there.omega), 1e-9));
@@ -213,8 +213,8 @@ TEST_CASE("families move their parameters as their directions say") {
 
 TEST_CASE("misuse and early ends") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
-    const auto run = [&](const study::LocusStudy& study) { return study::run_locus(problem, study, {}, {}); };
-    study::LocusStudy study;
+    const auto run = [&](const verbs::LocusOptions& study) { return verbs::run_locus(problem, study, {}, {}); };
+    verbs::LocusOptions study;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("locus.along"), std::invalid_argument);
     study.along = Key::nd_voltage;
     study.from = 0.3;
@@ -229,11 +229,11 @@ TEST_CASE("misuse and early ends") {
     study.along = Key::nd_voltage;
     study.max_points = 5;
     const auto few = run(study);
-    CHECK(few.ending == study::Ending::budget);
+    CHECK(few.ending == verbs::Ending::budget);
     CHECK(few.curves.at(0).points.size() <= 6);
     int asked = 0;
-    const auto stopped = study::run_locus(problem, study, {}, [&] { return ++asked > 3; });
-    CHECK(stopped.ending == study::Ending::interrupted);
-    CHECK(study::LocusStudyResult{}.ending == study::Ending::not_run);
+    const auto stopped = verbs::run_locus(problem, study, {}, [&] { return ++asked > 3; });
+    CHECK(stopped.ending == verbs::Ending::interrupted);
+    CHECK(verbs::LocusResult{}.ending == verbs::Ending::not_run);
     CHECK(Locus{}.end == branch::End::not_run);
 }

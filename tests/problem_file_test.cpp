@@ -1,8 +1,8 @@
-#include "io/nearest_name.hpp"
-#include "io/problem_error.hpp"
-#include "io/problem_file.hpp"
-#include "io/setting_table.hpp"
+#include "problem/nearest_name.hpp"
+#include "problem/problem_error.hpp"
 #include "scratch_folder.hpp"
+#include "verbs/problem_file.hpp"
+#include "verbs/setting_table.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,10 +12,10 @@
 
 using namespace percuss;
 using design::Quantity;
-using io::ProblemError;
-using io::ProblemFile;
-using io::Setting;
 using model::Key;
+using problem::ProblemError;
+using verbs::ProblemFile;
+using verbs::Setting;
 
 namespace {
 
@@ -55,7 +55,7 @@ Setting option(std::string key, std::string value) { return {std::move(key), std
 
 ProblemFile read(const std::string& text, const std::vector<Setting>& options = {}) {
     const tests::ScratchFolder folder;
-    return io::read_problem(folder.write("p.ini", text), options);
+    return verbs::read_problem(folder.write("p.ini", text), options);
 }
 
 /// The message with which a text is refused, or "accepted".
@@ -71,7 +71,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 }  // namespace
 
 TEST_CASE("the shipped actuator is the paper's") {
-    const ProblemFile problem = io::read_problem(shipped("wu2022-actuator.ini"), {});
+    const ProblemFile problem = verbs::read_problem(shipped("wu2022-actuator.ini"), {});
     const model::Specification& spec = problem.study.design.actuator;
     CHECK(problem.name == "wu2022-actuator");
     CHECK(spec.family == model::Family::dielectric_elastomer_si);
@@ -85,15 +85,15 @@ TEST_CASE("the shipped actuator is the paper's") {
 }
 
 TEST_CASE("the shipped nondimensional problem has the paper's defaults") {
-    const ProblemFile problem = io::read_problem(shipped("wu2022-nondimensional.ini"), {});
+    const ProblemFile problem = verbs::read_problem(shipped("wu2022-nondimensional.ini"), {});
     const auto& p = model::scale(problem.study.design.actuator).parameters;
     const std::array<double, 12> expected = {1.1, 1.0, 3.0, 2.0, 0.3, 60.0, 0.8, 0.1, 2500.0, 2.0, 0.4, 1.0};
     for (std::size_t i = 0; i < expected.size(); ++i) { CHECK(p[i] == expected[i]); }
-    CHECK(io::units_of(problem) == "nondimensional");
+    CHECK(verbs::units_of(problem) == "nondimensional");
 }
 
 TEST_CASE("the shipped crawler is the main job") {
-    const ProblemFile problem = io::read_problem(shipped("crawler.ini"), {});
+    const ProblemFile problem = verbs::read_problem(shipped("crawler.ini"), {});
     const design::Problem& design = problem.study.design;
     REQUIRE(design.variables.size() == 4);
     CHECK(design.variables[0].key == Key::stop_gap);
@@ -116,15 +116,16 @@ TEST_CASE("the shipped crawler is the main job") {
     CHECK(design.limits[2].bound == 50e6);
     CHECK(design.limits[3].bound == 110.0);
     CHECK(design.single_stable == design::SingleStable::orbit);
-    CHECK_NOTHROW(io::require_one_objective(problem));
-    CHECK_THROWS_AS(io::require_frequency(problem), ProblemError);
+    CHECK_NOTHROW(verbs::require_one_objective(problem));
+    CHECK_THROWS_AS(verbs::require_frequency(problem), ProblemError);
 }
 
 TEST_CASE("the shipped oscillators are the published ones") {
-    const auto soft = model::scale(io::read_problem(shipped("soft-impact.ini"), {}).study.design.actuator).parameters;
+    const auto soft =
+        model::scale(verbs::read_problem(shipped("soft-impact.ini"), {}).study.design.actuator).parameters;
     CHECK(soft[model::spring::force] == 0.152380952381);
     CHECK(soft[model::spring::stop_stiffness] == 29.0);
-    const ProblemFile duffing = io::read_problem(shipped("duffing.ini"), {});
+    const ProblemFile duffing = verbs::read_problem(shipped("duffing.ini"), {});
     CHECK(duffing.study.design.actuator.law == model::StopLaw::none);
     const auto scaled = model::scale(duffing.study.design.actuator);
     CHECK(scaled.parameters[model::spring::omega] == doctest::Approx(1.2).epsilon(1e-15));
@@ -159,7 +160,7 @@ TEST_CASE("defaults are filled in") {
     const ProblemFile problem = read(nondimensional);
     CHECK(problem.study.design.actuator.value(Key::nd_layers) == 1.0);
     CHECK(problem.study.design.actuator.law == model::StopLaw::kelvin_voigt);
-    const study::OptimiserOptions defaults;
+    const verbs::OptimiserOptions defaults;
     CHECK(problem.study.optimiser.method == defaults.method);
     CHECK(problem.orbit.period == 1);
     CHECK_FALSE(problem.orbit.start);
@@ -255,8 +256,8 @@ TEST_CASE("what is wrong is refused with a hint") {
 
 TEST_CASE("files that cannot be read are refused") {
     const tests::ScratchFolder folder;
-    CHECK_THROWS_AS(io::read_problem(folder.path() / "absent.ini", {}), ProblemError);
-    CHECK_THROWS_AS(io::read_problem(folder.path(), {}), ProblemError);
+    CHECK_THROWS_AS(verbs::read_problem(folder.path() / "absent.ini", {}), ProblemError);
+    CHECK_THROWS_AS(verbs::read_problem(folder.path(), {}), ProblemError);
 }
 
 TEST_CASE("no stop, no stop keys") {
@@ -269,7 +270,7 @@ TEST_CASE("no stop, no stop keys") {
 TEST_CASE("optimise wants variables and one objective") {
     const auto complaint = [](const std::string& design) -> std::string {
         try {
-            io::require_one_objective(read(nondimensional + "[design]\n" + design));
+            verbs::require_one_objective(read(nondimensional + "[design]\n" + design));
         } catch (const ProblemError& error) { return error.what(); }
         return "";
     };
@@ -286,31 +287,31 @@ TEST_CASE("inspection collects every trouble and marks the settings") {
     const tests::ScratchFolder folder;
     const auto file =
         folder.write("p.ini", "[spring-mass]\nmass = -1\ndamping = 3 mm\nforce = 1\n[stop]\ngap = 1 mm\n");
-    const ProblemFile problem = io::inspect_problem(file, {});
+    const ProblemFile problem = verbs::inspect_problem(file, {});
     // mass out of range, damping of the wrong dimension, stiffness and two keys of the stop missing
     CHECK(problem.troubles.size() == 5);
     int marked = 0;
-    for (const io::ResolvedSetting& setting : problem.settings) { marked += setting.trouble.empty() ? 0 : 1; }
+    for (const verbs::ResolvedSetting& setting : problem.settings) { marked += setting.trouble.empty() ? 0 : 1; }
     CHECK(marked == 5);
-    CHECK_THROWS_AS(io::read_problem(file, {}), ProblemError);
+    CHECK_THROWS_AS(verbs::read_problem(file, {}), ProblemError);
 }
 
 TEST_CASE("the hash tells problems apart and units and spelling do not matter") {
-    const std::string base = io::problem_hash(read(spring));
+    const std::string base = verbs::problem_hash(read(spring));
     std::string other = spring;
     other.replace(other.find("0.5 mm"), 6, "500 um");
-    CHECK(io::problem_hash(read(other)) == base);
-    CHECK(io::problem_hash(read(spring, {option("stop.gap", "0.0005")})) == base);
-    CHECK(io::problem_hash(read(spring, {option("stop.gap", "0.51 mm")})) != base);
-    CHECK(io::problem_hash(read(spring, {option("stop.law", "no-tension")})) != base);
-    CHECK(io::problem_hash(read(spring, {option("design.limit", "amplitude <= 1 mm")})) != base);
+    CHECK(verbs::problem_hash(read(other)) == base);
+    CHECK(verbs::problem_hash(read(spring, {option("stop.gap", "0.0005")})) == base);
+    CHECK(verbs::problem_hash(read(spring, {option("stop.gap", "0.51 mm")})) != base);
+    CHECK(verbs::problem_hash(read(spring, {option("stop.law", "no-tension")})) != base);
+    CHECK(verbs::problem_hash(read(spring, {option("design.limit", "amplitude <= 1 mm")})) != base);
     // Bounds count to the last digit, though people see six.
     const auto limited = [](const char* bound) {
-        return io::problem_hash(read(spring, {option("design.limit", std::string("amplitude <= ") + bound)}));
+        return verbs::problem_hash(read(spring, {option("design.limit", std::string("amplitude <= ") + bound)}));
     };
     CHECK(limited("0.001") != limited("0.001000000001"));
     const auto ranged = [](const char* upper) {
-        return io::problem_hash(read(spring, {option("design.variable", std::string("stop.gap in 0 .. ") + upper)}));
+        return verbs::problem_hash(read(spring, {option("design.variable", std::string("stop.gap in 0 .. ") + upper)}));
     };
     CHECK(ranged("0.001") != ranged("0.001000000001"));
     CHECK(base.size() == 16);
@@ -318,18 +319,18 @@ TEST_CASE("the hash tells problems apart and units and spelling do not matter") 
 
 TEST_CASE("every key has its line in the table") {
     for (std::size_t i = 0; i < model::key_count; ++i) {
-        CHECK(io::find_setting(model::key_info(static_cast<Key>(i)).name) != nullptr);
+        CHECK(verbs::find_setting(model::key_info(static_cast<Key>(i)).name) != nullptr);
     }
-    CHECK(io::find_setting("design.limit")->repeatable);
-    CHECK(io::find_setting("stop.gapp") == nullptr);
+    CHECK(verbs::find_setting("design.limit")->repeatable);
+    CHECK(verbs::find_setting("stop.gapp") == nullptr);
 }
 
 TEST_CASE("edit distance") {
-    CHECK(io::edit_distance("", "abc") == 3);
-    CHECK(io::edit_distance("abc", "abc") == 0);
-    CHECK(io::edit_distance("kitten", "sitting") == 3);
-    CHECK(io::edit_distance("gap", "gpa") == 1);
+    CHECK(problem::edit_distance("", "abc") == 3);
+    CHECK(problem::edit_distance("abc", "abc") == 0);
+    CHECK(problem::edit_distance("kitten", "sitting") == 3);
+    CHECK(problem::edit_distance("gap", "gpa") == 1);
     const std::vector<std::string> names = {"stop.gap", "stop.damping", "drive.voltage"};
-    CHECK(io::nearest_name("gap", names) == "stop.gap");
-    CHECK(io::nearest_name("drive.volts", names) == "drive.voltage");
+    CHECK(problem::nearest_name("gap", names) == "stop.gap");
+    CHECK(problem::nearest_name("drive.volts", names) == "drive.voltage");
 }

@@ -4,7 +4,7 @@
 #include "design_cases.hpp"
 #include "orbit/polish.hpp"
 #include "relative.hpp"
-#include "study/optimise.hpp"
+#include "verbs/optimise/optimise.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -160,21 +160,21 @@ TEST_CASE("tier 1 alone puts the lower end of the band at the flip of the motion
 }
 
 TEST_CASE("tier 3: the low-loss design is moved away from the motion that refutes it, at a price") {
-    study::StudyProblem problem = test::shipped_problem("low-loss");
+    verbs::StudyProblem problem = test::shipped_problem("low-loss");
     problem.optimiser.samples = 8;
     problem.optimiser.starts = 1;
     problem.design.sampling.starts = 256;
 
     problem.design.single_stable = design::SingleStable::sampled;
-    const auto refuted = study::run_optimise(problem, nullptr, {}, {});
+    const auto refuted = verbs::run_optimise(problem, nullptr, {}, {});
     CHECK(refuted.status == "not-certified");
-    CHECK(refuted.ending == study::Ending::not_certified);
+    CHECK(refuted.ending == verbs::Ending::not_certified);
     REQUIRE(refuted.counterexamples.size() == 1);
     CHECK(refuted.counterexamples[0].period == 4);
     CHECK(refuted.best.uniqueness.verdict == Verdict::not_unique);
 
     problem.design.single_stable = design::SingleStable::refuted;
-    const auto alone = study::run_optimise(problem, nullptr, {}, {});
+    const auto alone = verbs::run_optimise(problem, nullptr, {}, {});
     CHECK(alone.status == "optimal");
     CHECK(alone.best.uniqueness.verdict == Verdict::unique);
     CHECK(alone.best.uniqueness.tier == 2);
@@ -185,7 +185,7 @@ TEST_CASE("tier 3: the low-loss design is moved away from the motion that refute
     CHECK(force < alone.objective_unrefuted);
     CHECK(force == test::relative(15.4960, 1e-4));
     const auto window = std::find_if(alone.limits.begin(), alone.limits.end(),
-                                     [](const study::LimitReport& limit) { return limit.name == "omega"; });
+                                     [](const verbs::LimitReport& limit) { return limit.name == "omega"; });
     REQUIRE(window != alone.limits.end());
     CHECK(window->active);
     CHECK(window->multiplier > 0.0);

@@ -4,9 +4,9 @@
 #include "design_cases.hpp"
 #include "reference_values.hpp"
 #include "relative.hpp"
-#include "study/branch.hpp"
-#include "study/locus.hpp"
-#include "study/sweep.hpp"
+#include "verbs/branch/branch.hpp"
+#include "verbs/locus/locus.hpp"
+#include "verbs/sweep/sweep.hpp"
 
 #include <doctest/doctest.h>
 
@@ -48,26 +48,24 @@ double amplitude(const Evaluation& e) { return e.value(Quantity::amplitude); }
 }  // namespace
 
 TEST_CASE("figure 6a: without the stop both sweeps are one curve") {
-    study::StudyProblem problem = test::shipped_problem("wu2022-fig6");
+    verbs::StudyProblem problem = test::shipped_problem("wu2022-fig6");
     problem.design.actuator.law = model::StopLaw::none;
-    const study::SweepStudyResult sweep =
-        study::run_sweep(problem, {.from = 1.2, .to = 3.0, .steps = 45}, nullptr, {}, {});
-    CHECK(sweep.ending == study::Ending::verified);
+    const verbs::SweepResult sweep = verbs::run_sweep(problem, {.from = 1.2, .to = 3.0, .steps = 45}, nullptr, {}, {});
+    CHECK(sweep.ending == verbs::Ending::verified);
     CHECK(sweep.comparison.compared == 46);
     CHECK(sweep.comparison.coincide());
     CHECK(sweep.comparison.largest < 1e-6);
 }
 
 TEST_CASE("figure 6b: forward the resonance lies far above the backward one") {
-    const study::StudyProblem problem = test::shipped_problem("wu2022-fig6");
+    const verbs::StudyProblem problem = test::shipped_problem("wu2022-fig6");
     // Beside the edge few states lead to the weak motion: already steps of 0.02 throw it off at 1.94.
-    const study::SweepStudyResult sweep =
-        study::run_sweep(problem, {.from = 1.9, .to = 2.6, .steps = 70}, nullptr, {}, {});
+    const verbs::SweepResult sweep = verbs::run_sweep(problem, {.from = 1.9, .to = 2.6, .steps = 70}, nullptr, {}, {});
     REQUIRE(sweep.directions.size() == 2);
     const double jump[] = {test::boundary_reference::fold_upper, test::boundary_reference::grazing_upper};
     for (std::size_t i = 0; i < 2; ++i) {
         CAPTURE(i);
-        const study::SweepDirection& direction = sweep.directions[i];
+        const verbs::SweepDirection& direction = sweep.directions[i];
         REQUIRE(direction.jumps.size() == 1);
         const double before = direction.points[direction.jumps[0].before].omega;
         const double after = direction.points[direction.jumps[0].after].omega;
@@ -78,10 +76,10 @@ TEST_CASE("figure 6b: forward the resonance lies far above the backward one") {
     // Solved for, in place of swept.
     const Evaluation backward = test::evaluate(figure(6));
     CHECK(std::abs(edge(backward) - test::boundary_reference::grazing_upper) < 6e-12);
-    study::BranchStudy range;
+    verbs::BranchOptions range;
     range.from = 4.0;
     range.to = 1.2;
-    const study::BranchStudyResult branch = study::run_branch(problem, range, {}, {});
+    const verbs::BranchResult branch = verbs::run_branch(problem, range, {}, {});
     REQUIRE(branch.branches.size() == 1);
     double highest_fold = 0.0;
     for (const branch::BoundaryPoint& b : branch.branches[0].boundaries) {
@@ -115,7 +113,7 @@ TEST_CASE("figure 7: below a voltage of about 0.2 nothing strikes, above it edge
 TEST_CASE("figure 7: the edge followed through the onset and on to the lower end of the impacts") {
     for (double from : {0.5, 0.4}) {
         CAPTURE(from);
-        const study::LocusStudyResult locus = study::run_locus(
+        const verbs::LocusResult locus = verbs::run_locus(
             test::shipped_problem("wu2022-fig7"),
             {.kind = boundary::Kind::grazing, .along = Key::nd_voltage, .from = from, .to = 0.19}, {}, {});
         REQUIRE(locus.curves.size() == 1);  // one curve: both grazing points it could begin with are on it

@@ -1,9 +1,9 @@
 #include "cli/arguments.hpp"
 
-#include "io/nearest_name.hpp"
-#include "io/problem_error.hpp"
-#include "io/setting_table.hpp"
 #include "model/units.hpp"
+#include "problem/nearest_name.hpp"
+#include "problem/problem_error.hpp"
+#include "verbs/setting_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +14,8 @@ namespace percuss::cli {
 
 namespace {
 
-using io::ProblemError;
-using io::Setting;
+using problem::ProblemError;
+using verbs::Setting;
 
 constexpr std::array verb_table = {
     VerbInfo{"check", "print every value of a problem with units, say what is missing or out of range", true},
@@ -81,7 +81,7 @@ std::string parse_verb(const std::string& word) {
     if (word.starts_with('-')) {
         throw ProblemError("the first argument must be a verb, not " + word + "; percuss --help lists them");
     }
-    throw ProblemError("unknown verb '" + word + "'; the nearest one is " + io::nearest_name(name, names));
+    throw ProblemError("unknown verb '" + word + "'; the nearest one is " + problem::nearest_name(name, names));
 }
 
 template <class Integer>
@@ -127,13 +127,13 @@ void apply(const Setting& option, Arguments& arguments) {
         arguments.keys.push_back({"sweep.mode", "chirp", true});
     } else {
         const std::string own = arguments.verb + "." + option.key;  // the verb's section, or that of orbits
-        const bool has_own = io::find_setting(own) != nullptr;
+        const bool has_own = verbs::find_setting(own) != nullptr;
         arguments.keys.push_back({has_own ? own : "orbit." + option.key, option.value, true});
     }
 }
 
-std::vector<io::RunOption> run_options_of(std::string_view verb) {
-    std::vector<io::RunOption> options;
+std::vector<verbs::RunOption> run_options_of(std::string_view verb) {
+    std::vector<verbs::RunOption> options;
     for (const OptionInfo& info : option_table) {
         if (applies(info, verb)) { options.push_back({std::string(info.name), !info.value.empty()}); }
     }
@@ -156,7 +156,7 @@ Arguments parse_arguments(std::span<const std::string> arguments) {
         return parsed;
     }
     parsed.verb = parse_verb(first);
-    const auto line = io::parse_command_line(arguments.subspan(1), run_options_of(parsed.verb));
+    const auto line = verbs::parse_command_line(arguments.subspan(1), run_options_of(parsed.verb));
     parsed.keys = line.keys;
     for (const Setting& option : line.run_options) { apply(option, parsed); }
     if (parsed.help) { return parsed; }

@@ -2,7 +2,7 @@
 /// \file
 /// The command line taken apart.
 
-#include "io/settings.hpp"
+#include "verbs/settings.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -35,7 +35,7 @@ std::span<const OptionInfo> run_options();
 struct Arguments {
     std::string verb;     ///< canonical spelling; empty for --help and --version alone
     std::string problem;  ///< problem file
-    std::vector<io::Setting> keys;
+    std::vector<verbs::Setting> keys;
     std::optional<std::string> out;
     std::optional<int> jobs;
     std::optional<std::uint64_t> seed;
@@ -48,7 +48,7 @@ struct Arguments {
     bool gradients = false;
 };
 
-/// Arguments without the program's name. Throws io::ProblemError with one sentence for a wrong usage.
+/// Arguments without the program's name. Throws problem::ProblemError with one sentence for a wrong usage.
 Arguments parse_arguments(std::span<const std::string> arguments);
 
 }  // namespace percuss::cli

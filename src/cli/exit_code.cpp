@@ -2,7 +2,7 @@
 
 namespace percuss::cli {
 
-using study::Ending;
+using verbs::Ending;
 
 int exit_code(Ending ending) {
     switch (ending) {

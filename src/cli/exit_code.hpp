@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 
-#include "study/study.hpp"
+#include "verbs/study.hpp"
 
 #include <string_view>
 
@@ -15,7 +15,7 @@ inline constexpr int exit_not_certified = 4;
 inline constexpr int exit_some_failed = 5;
 inline constexpr int exit_interrupted = 130;
 
-int exit_code(study::Ending ending);
-std::string_view ending_text(study::Ending ending);
+int exit_code(verbs::Ending ending);
+std::string_view ending_text(verbs::Ending ending);
 
 }  // namespace percuss::cli

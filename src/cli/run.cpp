@@ -4,7 +4,7 @@
 #include "cli/help.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/verbs.hpp"
-#include "io/problem_error.hpp"
+#include "problem/problem_error.hpp"
 
 #include <cstdio>
 #include <exception>
@@ -49,7 +49,7 @@ int run_verb(const Arguments& arguments) {
 int run(std::span<const std::string> arguments) {
     try {
         return run_verb(parse_arguments(arguments));
-    } catch (const io::ProblemError& error) {
+    } catch (const problem::ProblemError& error) {
         complain(error.what());
         return exit_bad_input;
     } catch (const std::invalid_argument& error) {

@@ -7,9 +7,9 @@
 namespace percuss::cli {
 
 using Clock = std::chrono::steady_clock;
-using study::Ending;
+using verbs::Ending;
 
-study::StopRequest stop_request(const std::optional<double>& time_limit) {
+verbs::StopRequest stop_request(const std::optional<double>& time_limit) {
     const auto begun = Clock::now();
     return [time_limit, begun] {
         return interrupted() ||

@@ -3,8 +3,8 @@
 #include "cli/progress.hpp"
 #include "cli/session.hpp"
 #include "cli/stopping.hpp"
-#include "io/simulate_results.hpp"
-#include "io/sweep_results.hpp"
+#include "verbs/simulate/simulate_results.hpp"
+#include "verbs/sweep/sweep_results.hpp"
 
 #include <memory>
 
@@ -12,39 +12,39 @@ namespace percuss::cli {
 
 int simulate(const Arguments& arguments) {
     Session session(arguments);
-    study::SimulateStudy study = session.problem().simulate;
+    verbs::SimulateOptions study = session.problem().simulate;
     study.orbit_start = session.problem().orbit.start;
     study.orbit_period = session.problem().orbit.period;
     session.start({"result.json", "report.html", "series.csv", "contacts.csv"});
-    study::SimulateStudyResult result;
+    verbs::SimulateResult result;
     {
         const auto series = session.table("series.csv");
         const auto contacts = session.table("contacts.csv");
         Progress progress(arguments.quiet);
-        result = study::run_simulate(session.problem().study, study, series.get(), contacts.get(), progress.observer(),
+        result = verbs::run_simulate(session.problem().study, study, series.get(), contacts.get(), progress.observer(),
                                      stop_request(arguments.time_limit));
     }
     result.ending = told_apart(result.ending);
 
-    const std::string document = io::simulate_document(session.problem(), result);
-    const auto presentation = io::present_simulation(session.problem(), result);
+    const std::string document = verbs::simulate_document(session.problem(), result);
+    const auto presentation = verbs::present_simulation(session.problem(), result);
     return session.conclude(result.ending, document, presentation);
 }
 
 int sweep(const Arguments& arguments) {
-    Session session(arguments, io::FrequencyUse::ranges);
+    Session session(arguments, verbs::FrequencyUse::ranges);
     session.start({"result.json", "report.html", "sweep.csv"});
-    study::SweepStudyResult result;
+    verbs::SweepResult result;
     {
         const auto rows = session.table("sweep.csv");
         Progress progress(arguments.quiet);
-        result = study::run_sweep(session.problem().study, session.problem().sweep, rows.get(), progress.observer(),
+        result = verbs::run_sweep(session.problem().study, session.problem().sweep, rows.get(), progress.observer(),
                                   stop_request(arguments.time_limit));
     }
     result.ending = told_apart(result.ending);
 
-    const std::string document = io::sweep_document(session.problem(), result);
-    const auto presentation = io::present_sweep(session.problem(), result);
+    const std::string document = verbs::sweep_document(session.problem(), result);
+    const auto presentation = verbs::present_sweep(session.problem(), result);
     return session.conclude(result.ending, document, presentation);
 }
 

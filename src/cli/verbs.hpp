@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// One function per verb, from parsed arguments to exit code. They throw io::ProblemError or std::invalid_argument for
-/// bad input.
+/// One function per verb, from parsed arguments to exit code. They throw problem::ProblemError or std::invalid_argument
+/// for bad input.
 
 #include "cli/arguments.hpp"
 

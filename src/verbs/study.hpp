@@ -1,0 +1,51 @@
+#pragma once
+/// \file
+/// What all studies share: the problem with the optimiser's settings, a deadline, an observer, a row sink.
+
+#include "design/evaluation.hpp"
+#include "design/problem.hpp"
+#include "numerics/cancel.hpp"
+#include "results/row_sink.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace percuss::verbs {
+
+struct OptimiserOptions {
+    std::string method = "ipopt";  ///< names of optimise::methods()
+    int starts = 2;                ///< local solves per layer count
+    int samples = 32;              ///< space-filling designs looked at before, per layer count
+    int max_evaluations = 4000;    ///< per layer count
+    double tolerance = 1e-6;       ///< KKT residual at which a point is certified
+};
+
+struct StudyProblem {
+    design::Problem design;
+    OptimiserOptions optimiser;
+    std::uint64_t seed = 1;
+    int jobs = 1;
+};
+
+/// The problem as the engine sees it: with the study's seed and threads for what is sampled.
+inline design::Problem design_problem(const StudyProblem& problem) {
+    design::Problem design = problem.design;
+    design.sampling.seed = problem.seed;
+    design.sampling.jobs = problem.jobs;
+    return design;
+}
+
+/// Progress: called now and then with the share done (0..1, negative if unknown) and a short line. Returning is all
+/// that is asked of it.
+using Observer = std::function<void(double, std::string_view)>;
+using StopRequest = numerics::CancelRequest;
+using results::Column;
+using results::RowSink;
+
+/// How a study ended; maps onto the exit codes 0, 3, 4, 5, 130.
+enum class Ending : std::uint8_t { not_run, verified, infeasible, not_certified, budget, some_failed, interrupted };
+
+}  // namespace percuss::verbs
