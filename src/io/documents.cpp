@@ -141,7 +141,7 @@ Json limit_of(const study::LimitReport& limit) {
 
 Json integer_case_of(const study::IntegerCaseReport& report) {
     return {{"layers", report.layers},
-            {"status", report.status},
+            {"status", study::to_string(report.status)},
             {"objective", report.objective},
             {"kkt_residual", report.kkt_residual},
             {"design", design_of(report.design)},
@@ -217,7 +217,7 @@ std::string orbit_document(const ProblemFile& problem, const study::OrbitStudyRe
 std::string optimise_document(const ProblemFile& problem, const study::OptimiseStudyResult& result) {
     const model::Family family = problem.study.design.actuator.family;
     Json out = beginning(problem, "percuss/optimise/1");
-    out["status"] = result.status;
+    out["status"] = study::to_string(result.status);
     out["reason"] = result.reason;
     out["objective"] = Json::object();
     for (const design::Objective& objective : problem.study.design.objectives) {
