@@ -4,7 +4,7 @@
 #include "boundary/critical.hpp"
 #include "branch/trace.hpp"
 #include "design/families.hpp"
-#include "design/operating_point.hpp"
+#include "design/reach.hpp"
 #include "design/window.hpp"
 #include "orbit/polish.hpp"
 
@@ -120,6 +120,7 @@ private:
         options.seed = c_.sampling->seed;
         options.jobs = c_.sampling->jobs;
         options.max_cycles = c_.sampling->cycles;
+        options.cancelled = c_.cancelled;
         const orbit::Orbit tuned = orbit::polish_orbit(exact, orbit::state_at_zero(exact, *here), here->map.period);
         if (!tuned.ok() || !(orbit::max_multiplier(tuned) < 1.0)) { return false; }
         const auto answer = attractor::refute({exact, scout}, tuned, attractor::ensemble_box(exact, 0.0), options);

@@ -141,7 +141,7 @@ Json limit_of(const verbs::LimitReport& limit) {
 
 Json integer_case_of(const verbs::IntegerCaseReport& report) {
     return {{"layers", report.layers},
-            {"status", report.status},
+            {"status", verbs::to_string(report.status)},
             {"objective", report.objective},
             {"kkt_residual", report.kkt_residual},
             {"design", design_of(report.design)},
@@ -217,7 +217,7 @@ std::string orbit_document(const ProblemFile& problem, const verbs::OrbitResult&
 std::string optimise_document(const ProblemFile& problem, const verbs::OptimiseStudyResult& result) {
     const model::Family family = problem.study.design.actuator.family;
     Json out = beginning(problem, "percuss/optimise/1");
-    out["status"] = result.status;
+    out["status"] = verbs::to_string(result.status);
     out["reason"] = result.reason;
     out["objective"] = Json::object();
     for (const design::Objective& objective : problem.study.design.objectives) {

@@ -180,8 +180,8 @@ Block integer_cases_block(const ProblemFile& problem, const verbs::OptimiseStudy
         const std::string objective = objectives.empty()
                                         ? number(report.objective)
                                         : quantity_text(problem, objectives.front().quantity, report.objective);
-        block.rows.push_back(
-            {number(report.layers), report.status, objective, number(report.kkt_residual, 2), report.reason});
+        block.rows.push_back({number(report.layers), std::string(verbs::to_string(report.status)), objective,
+                              number(report.kkt_residual, 2), report.reason});
     }
     return block;
 }
@@ -211,7 +211,9 @@ Block counterexamples_block(const ProblemFile& problem, const verbs::OptimiseStu
 
 /// What it cost to be alone.
 Block price_block(const ProblemFile& problem, const verbs::OptimiseStudyResult& result) {
-    if (std::isnan(result.objective_unrefuted) || result.status != "optimal") { return sentence(""); }
+    if (std::isnan(result.objective_unrefuted) || result.status != verbs::OptimiseStatus::optimal) {
+        return sentence("");
+    }
     const Quantity objective = problem.study.design.objectives.front().quantity;
     const double now = result.best.value(objective);
     return sentence("Price of being the only stable motion found: " +
@@ -260,7 +262,7 @@ Presentation present_orbit(const ProblemFile& problem, const verbs::OrbitResult&
 Presentation present_optimum(const ProblemFile& problem, const verbs::OptimiseStudyResult& result) {
     Presentation out;
     out.title = problem.name + ": optimum";
-    out.blocks.push_back(sentence(status_sentence(result.status, result.reason)));
+    out.blocks.push_back(sentence(status_sentence(std::string(verbs::to_string(result.status)), result.reason)));
     out.blocks.push_back(design_block(result.design));
     add_evaluation(problem, result.best, true, out);
     out.blocks.push_back(limits_block(result));

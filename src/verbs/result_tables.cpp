@@ -105,8 +105,8 @@ std::string layers_csv(const ProblemFile& problem, const verbs::OptimiseStudyRes
     columns.push_back({"reason", ""});
     std::vector<std::vector<std::string>> rows;
     for (const verbs::IntegerCaseReport& report : result.per_layers) {
-        std::vector<std::string> row = {cell(report.layers), report.status, cell(report.objective),
-                                        cell(report.kkt_residual)};
+        std::vector<std::string> row = {cell(report.layers), std::string(verbs::to_string(report.status)),
+                                        cell(report.objective), cell(report.kkt_residual)};
         for (const design::DesignVariable& variable : problem.study.design.variables) {
             double value = design::absent;
             for (const auto& [key, at] : report.design) { value = key == variable.key ? at : value; }
