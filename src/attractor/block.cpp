@@ -34,7 +34,7 @@ public:
         : exact_{systems.exact},
           scout_{systems.scout},
           options_(options),
-          scale_(half_widths(box, systems.exact.states())),
+          scale_(distance_scale(systems.exact, box)),
           known_before_(known.size()),
           known_(known) {
         for (const auto& orbit : known_) { traps_.push_back(&orbit->trap); }

@@ -141,7 +141,7 @@ Ensemble find_attractors(const Systems& systems, const Box& box, const EnsembleO
                          std::span<const orbit::Orbit> given) {
     check(systems, box, options, given);
     CountedSystems counted(systems);
-    const flow::State scale = half_widths(box, systems.exact.states());
+    const flow::State scale = distance_scale(systems.exact, box);
     Ensemble ensemble;
     ensemble.box = box;
 
@@ -240,7 +240,7 @@ Refutation refute(const Systems& systems, const orbit::Orbit& given, const Box& 
     CountedSystems counted(systems);
     Refutation refutation;
     refutation.box = box;
-    const KnownOrbits known = {make_known(counted.systems, given, half_widths(box, systems.exact.states()))};
+    const KnownOrbits known = {make_known(counted.systems, given, distance_scale(systems.exact, box))};
     refutation.cycles = counted.cost.periods();
     Blocks blocks(systems, box, options, true);
     for (long begun = 0; begun < blocks.count(); begun += options.jobs) {

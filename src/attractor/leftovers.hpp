@@ -22,7 +22,7 @@ class LeftoverJudge {
 public:
     LeftoverJudge(const Systems& systems, const Box& box, KnownOrbits& known, const LeftoverOptions& options)
         : systems_(systems),
-          scale_(half_widths(box, systems.exact.states())),
+          scale_(distance_scale(systems.exact, box)),
           known_(known),
           options_(options) {}
 

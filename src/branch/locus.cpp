@@ -22,7 +22,7 @@ public:
           options_(options),
           start_(start),
           equations_(family, start.kind, start.point.motion, start.contact, options.size),
-          walker_([this](const Vector& u, Vector& f, Matrix& j) { return equations_.evaluate(u, {}, f, j); },
+          walker_([this](const Vector& u, Vector& f, Matrix& j) { return evaluate(u, f, j); },
                   {.first_step = 0.02,
                    .largest_step = 0.25,
                    .largest_parameter_step = 0.1,
@@ -43,6 +43,14 @@ public:
     }
 
 private:
+    bool evaluate(const Vector& u, Vector& f, Matrix& jacobian) const {
+        auto r = equations_.evaluate(u, {});
+        if (!r) { return false; }
+        f = std::move(r->value);
+        jacobian = std::move(r->jacobian);
+        return true;
+    }
+
     [[nodiscard]] bool can_continue() {
         if (locus_.end != End::not_run) { return false; }
         if (static_cast<int>(locus_.points.size()) >= options_.max_points || (options_.stop && options_.stop())) {

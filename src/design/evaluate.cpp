@@ -247,6 +247,7 @@ private:
                                : "cancelled";
         }
         result_.periods = cost_.periods();
+        result_.steps = cost_.steps;
         return std::move(result_);
     }
 

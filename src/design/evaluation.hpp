@@ -100,6 +100,7 @@ struct Evaluation {
     OrbitReport orbit;
     Uniqueness uniqueness;
     double periods = 0.0;  ///< drive cycles integrated
+    long steps = 0;        ///< integration steps taken, those of ensembles of starts apart
     Evaluation();
     [[nodiscard]] double value(Quantity q) const { return quantities[static_cast<std::size_t>(q)]; }
 };

@@ -40,11 +40,10 @@ Matrix bordered_below(const Matrix& a, const Vector& row) {
 }
 
 template NullVectors<double> nearest_null_vectors(const Matrix&);
-template NullVectors<std::complex<double>> nearest_null_vectors(const Eigen::MatrixXcd&);
+template NullVectors<Complex> nearest_null_vectors(const ComplexMatrix&);
 template BorderedSolution<double> solve_bordered(const Matrix&, const NullVectors<double>&);
-template BorderedSolution<std::complex<double>> solve_bordered(const Eigen::MatrixXcd&,
-                                                               const NullVectors<std::complex<double>>&);
+template BorderedSolution<Complex> solve_bordered(const ComplexMatrix&, const NullVectors<Complex>&);
 template BorderedSolution<double> solve_bordered(const Matrix&);
-template BorderedSolution<std::complex<double>> solve_bordered(const Eigen::MatrixXcd&);
+template BorderedSolution<Complex> solve_bordered(const ComplexMatrix&);
 
 }  // namespace percuss::numerics

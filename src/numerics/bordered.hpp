@@ -11,8 +11,6 @@
 
 #include "numerics/linear.hpp"
 
-#include <complex>
-
 namespace percuss::numerics {
 
 template <class Scalar>

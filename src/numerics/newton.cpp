@@ -29,6 +29,8 @@ std::string_view to_string(NewtonStatus status) {
 
 void check(const NewtonOptions& o) {
     demand(o.max_iterations > 0, "max_iterations", o.max_iterations, "above 0");
+    demand(o.min_iterations > 0 && o.min_iterations <= o.max_iterations, "min_iterations", o.min_iterations,
+           "1 to max_iterations");
     demand(o.max_halvings >= 0, "max_halvings", o.max_halvings, "0 or more");
     demand(o.residual_tolerance > 0.0, "residual_tolerance", o.residual_tolerance, "above 0");
     demand(o.step_tolerance > 0.0, "step_tolerance", o.step_tolerance, "above 0");

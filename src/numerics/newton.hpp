@@ -28,7 +28,8 @@ inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 /// The defaults are those of stroboscopic shooting; see the callers for what differs and why.
 struct NewtonOptions {
     int max_iterations = 25;
-    int max_halvings = 8;  ///< of a step that does not lower the residual; 0: every step is taken whatever it brings
+    int min_iterations = 1;  ///< convergence is not looked for before
+    int max_halvings = 8;    ///< of a step that does not lower the residual; 0: every step is taken whatever it brings
     double residual_tolerance = 1e-11;  ///< on |F|, relative to 1 + |x|
     double step_tolerance = 1e-9;       ///< on the last step, relative to 1 + |x|
     double max_step = 0.5;              ///< longest step, relative to 1 + |x|; `unlimited` for none
@@ -131,7 +132,8 @@ private:
     }
 
     [[nodiscard]] bool converged() const {
-        return out_.residual <= residual_limit() && out_.last_step <= options_.step_tolerance * scale_;
+        return out_.iterations >= options_.min_iterations && out_.residual <= residual_limit() &&
+               out_.last_step <= options_.step_tolerance * scale_;
     }
 
     NewtonOutcome<L> finish() {

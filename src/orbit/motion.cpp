@@ -16,15 +16,6 @@ using std::numbers::pi;
 /// Contact-sequence shooting takes this many directions at a time.
 constexpr std::size_t block_of_directions = 3;
 
-ReturnMap map_of(const Motion& motion) {
-    ReturnMap map;
-    map.stop = motion.form == Form::free ? flow::StopMode::off : flow::StopMode::hybrid;
-    map.phase = motion.phase;
-    map.period = motion.period;
-    map.mirrored = motion.mirrored;
-    return map;
-}
-
 /// P(y) - y_end, where y_end is y unless another end is given.
 std::optional<SequenceResidual> shoot_strobed(const flow::System& system, const Motion& motion,
                                               std::span<const flow::ParameterVector> directions,
@@ -88,6 +79,25 @@ double flight_before_first(const ContactSequence& sequence) {
 }
 
 }  // namespace
+
+ReturnMap map_of(const Motion& motion) {
+    ReturnMap map;
+    map.stop = motion.form == Form::free ? flow::StopMode::off : flow::StopMode::hybrid;
+    map.phase = motion.phase;
+    map.period = motion.period;
+    map.mirrored = motion.mirrored;
+    return map;
+}
+
+Motion motion_of_map(const ReturnMap& map, const flow::State& state) {
+    Motion motion;
+    motion.form = map.stop == flow::StopMode::off ? Form::free : Form::strobed;
+    motion.period = map.period;
+    motion.mirrored = map.mirrored;
+    motion.phase = map.phase;
+    motion.state = state;
+    return motion;
+}
 
 int Motion::unknowns(const flow::System& system) const {
     return form == Form::sequence ? sequence.unknowns(system) : system.states();
