@@ -378,3 +378,19 @@ TEST_CASE("misuse of ensembles throws") {
     CHECK_THROWS_AS(attractor::refute(systems, saddle, c.box, options), std::invalid_argument);
     CHECK_THROWS_AS(attractor::refute(systems, orbit::Orbit{}, c.box, options), std::invalid_argument);
 }
+
+TEST_CASE("a box narrower than what states resolve: its starts are classified as those of a wider one") {
+    const Case c(1.9);
+    EnsembleOptions options;
+    options.starts = 64;
+    for (const double width : {1e-6, 1e-9, 1e-12, 1e-15}) {
+        CAPTURE(width);
+        attractor::Box box{{0.5, 0.0, 1.0, 1.0}, {0.5, 0.0, 1.0, 1.0}};
+        for (std::size_t k = 0; k < 4; ++k) { box.upper[k] += width; }
+        const Ensemble ensemble = attractor::find_attractors({c.exact, c.scout}, box, options);
+        CHECK(ensemble.unclassified == 0);
+        REQUIRE(ensemble.attractors.size() == 1);
+        CHECK(ensemble.attractors[0].starts == 64);
+        CHECK(test::distance(ensemble.attractors[0].state, test::reference_orbits[0].state, 4) < 1e-12);
+    }
+}

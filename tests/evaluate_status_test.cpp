@@ -115,9 +115,9 @@ TEST_CASE("the static stroke exceeds the gap: irregular chatter below the edge i
     request.observe = flow::observe_extrema;
     const flow::Result stroke = test::run(*free.integrator, slow.parameters, request);
     CHECK(stroke.observables.x_max.value > free.integrator->stop_position(slow.parameters));
-    // and at the operating point no motion of up to 8 cycles repeats itself after 600 cycles. A chaotic motion comes back
-    // near any one of its states by chance, how near depends on the last digits; only one of period n does so at every
-    // state: of 64 in a row the one that fails most decides.
+    // and at the operating point no motion of up to 8 cycles repeats itself after 600 cycles. A chaotic motion comes
+    // back near any one of its states by chance, how near depends on the last digits; only one of period n does so at
+    // every state: of 64 in a row the one that fails most decides.
     const flow::System there = free.system.at_omega(e.operating_point.omega);
     const auto settled = orbit::settle(there, there.integrator->rest_state(there.parameters), 600);
     REQUIRE(settled.has_value());

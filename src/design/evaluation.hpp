@@ -67,7 +67,10 @@ struct Uniqueness {
     std::vector<Attractor> attractors;
 };
 
-/// Integration steps that one evaluation may take. TODO
+/// Integration steps that one evaluation may take, so that a stiff or absurd design ends in seconds to a minute. With
+/// the Taylor integrator, gradients and error estimates, tier 1 takes 434 to 2748 steps on the shipped problems and at
+/// most 76070 on 300 random designs of bench/stress_designs.cpp; the sampled tier with 64 starts up to 30709, ensembles
+/// apart; ARKODE some 20 times as many.
 inline constexpr long default_step_budget = 20'000'000;
 
 /// What is wanted of an evaluation; nothing else is computed. An evaluation that is cancelled, or needs more steps than
