@@ -329,7 +329,7 @@ TEST_CASE("the motion of three cycles lives on an isola") {
             if (!middle) { continue; }
             const branch::Look seen = branch::look(family, *middle, omega);
             // Not one beyond grazing, which is no motion.
-            if (seen.ok() && branch::contact_leaving(*middle) == branch::no_contact) {
+            if (seen.ok() && !branch::contact_leaving(*middle)) {
                 CHECK(branch::passes_through(family, isola, seen.point, options.size));
             }
         }
