@@ -329,7 +329,7 @@ TEST_CASE("the motion of three cycles lives on an isola") {
             if (!middle) { continue; }
             const branch::Look seen = branch::look(family, *middle, omega);
             // Not one beyond grazing, which is no motion.
-            if (seen.ok() && branch::contact_leaving(*middle) == branch::no_contact) {
+            if (seen.ok() && !branch::contact_leaving(*middle)) {
                 CHECK(branch::passes_through(family, isola, seen.point, options.size));
             }
         }
@@ -416,6 +416,44 @@ TEST_CASE("along a design variable: an S-curve in the voltage, and orbits solved
             CHECK(b.points[i].peak_force == relative(force, 1e-9));
         }
     }
+}
+
+TEST_CASE("without damping there are no torus points and no stable motions") {
+    for (const char* name : {"duffing", "soft-impact"}) {
+        CAPTURE(name);
+        study::StudyProblem problem = test::shipped_problem(name);
+        problem.design.actuator.set(Key::sm_damping, 0.0);
+        study::BranchStudy study;
+        study.max_points = 300;
+        const Branch branch = map_of(problem, study).branches.at(0);
+        CHECK(branch.neutral());
+        for (const BoundaryPoint& found : branch.boundaries) { CHECK(found.kind != Kind::torus); }
+        for (const Point& point : branch.points) { CHECK_FALSE(point.stable()); }
+        // With damping the same motions are told.
+        const Branch damped = map_of(test::shipped_problem(name), study).branches.at(0);
+        CHECK_FALSE(damped.neutral());
+        CHECK(damped.points.front().stable());
+    }
+}
+
+TEST_CASE("far below resonance, among folds less than a step apart, near is not closed") {
+    study::StudyProblem problem = test::shipped_problem("soft-impact");
+    model::Specification& spec = problem.design.actuator;
+    spec.set(Key::sm_mass, 5e-3);
+    spec.set(Key::sm_stiffness, 1263.0);
+    spec.set(Key::sm_damping, 0.05);
+    spec.set(Key::sm_force, 0.2);
+    spec.set(Key::stop_gap, 1e-4);
+    spec.set(Key::stop_stiffness, 5e5);
+    spec.set(Key::stop_damping, 0.5);
+    study::BranchStudy study;
+    study.from = 10.0;
+    study.max_points = 400;
+    // The branch sets out at an end of the range: a closed one would have had to leave it. Up to its 191st point it
+    // only comes near its first.
+    const auto result = map_of(problem, study);
+    CHECK(result.branches.at(0).end == End::budget);
+    CHECK(result.ending == study::Ending::budget);
 }
 
 TEST_CASE("what ends a branch, and what cannot be begun") {

@@ -190,12 +190,12 @@ TEST_CASE("every way it ends is said") {
     CHECK(numerics::newton<Linear>(of({1.0}), level, options).status == NewtonStatus::singular);
     // No real root: backtracking ends at the least residual.
     const auto no_root = scalar([](double x) { return x * x + 1.0; }, [](double x) { return 2.0 * x; });
-    CHECK(numerics::newton<Linear>(of({1.0}), no_root, options).status == NewtonStatus::iteration_limit);
+    CHECK(numerics::newton<Linear>(of({0.7}), no_root, options).status == NewtonStatus::iteration_limit);
     options.max_halvings = 8;
     CHECK(numerics::newton<Linear>(of({1e-3}), no_root, options).status == NewtonStatus::no_progress);
     // A residual that rounding keeps from falling: accepted within ten times the tolerance.
-    const auto floor = [](double level) {
-        return scalar([level](double x) { return x > 1.0 ? level : -level; }, [](double) { return 1e-6; });
+    const auto floor = [](double height) {
+        return scalar([height](double x) { return x > 1.0 ? height : -height; }, [](double) { return 1e-6; });
     };
     CHECK(numerics::newton<Linear>(of({1.0}), floor(1.9e-10), options).ok());
     CHECK(numerics::newton<Linear>(of({1.0}), floor(2.1e-10), options).status == NewtonStatus::no_progress);

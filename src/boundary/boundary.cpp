@@ -36,11 +36,12 @@ double angle_nearest_circle(const flow::System& system, const orbit::ReturnMap& 
 }
 
 /// How the boundaries of a map are solved for: in its own units, a state and a frequency of order one.
-CriticalOptions options_near(double omega) {
+CriticalOptions options_near(const flow::System& system, double omega) {
     CriticalOptions options;
     options.scaled = false;
     options.newton.max_iterations = 20;
     options.newton.max_step_is_relative = true;
+    options.newton.unknowns_in_scale = system.states();
     // After a step of 1e-9 the next would be of rounding size; a fold's differences leave 1e-8 in the Jacobian.
     options.newton.step_tolerance = 1e-9;
     options.newton.residual_tolerance = 1e-8;
@@ -93,7 +94,7 @@ Boundary solve_boundary(const flow::System& system, const orbit::ReturnMap& map,
     const orbit::Motion motion = orbit::motion_of_map(map, guess);
     const double angle = kind == Kind::torus ? angle_nearest_circle(system.at_omega(omega), map, guess) : 0.0;
     const CriticalPoint point =
-        solve_critical(family, kind, motion, omega, 0, angle, 1.0, directions, options_near(omega));
+        solve_critical(family, kind, motion, omega, 0, angle, 1.0, directions, options_near(system, omega));
     Boundary boundary;
     boundary.status = point.status;
     boundary.kind = kind;

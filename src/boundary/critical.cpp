@@ -217,8 +217,8 @@ public:
         const double p = equations_.parameters(u).front();
         left_bounds_ = !(p > options_.lowest && p < options_.highest);
         if (left_bounds_) { return false; }
-        const bool joined =
-            before_.size() > 0 && (u - before_).norm() < options_.directions_join_below * (1.0 + before_.norm());
+        const bool joined = before_.size() > 0 && (u - before_).norm() < options_.directions_join_below * scale_before_;
+        scale_before_ = numerics::scale_of(u, options_.newton);
         before_ = u;
         return evaluate(u, joined ? directions_ : std::span<const flow::ParameterVector>{}, at);
     }
@@ -240,6 +240,7 @@ private:
     std::span<const flow::ParameterVector> directions_;
     const CriticalOptions& options_;
     Vector before_;
+    double scale_before_ = 1.0;
     bool left_bounds_ = false;
 };
 

@@ -72,7 +72,7 @@ private:
         if (!walker_.advance()) { return lose("the step length collapsed"); }
         const Vector& u = walker_.point();
         const orbit::Motion motion = equations_.motion(u);
-        if (start_.kind != Kind::grazing && contact_leaving(motion) != no_contact) {
+        if (start_.kind != Kind::grazing && contact_leaving(motion)) {
             // Near grazing the speed is tiny beside everything else: the step may only have been too long.
             if (walker_.step() > shortest_step && walker_.retreat()) { return; }
             return lose("the motion grazes: the boundary ends on a grazing curve");

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -35,7 +36,9 @@ struct NewtonOptions {
     double max_step = 0.5;              ///< longest step, relative to 1 + |x|; `unlimited` for none
     bool residual_is_relative = true;   ///< otherwise residual_tolerance is absolute
     bool max_step_is_relative = true;   ///< otherwise max_step is absolute
-    bool take_last_step = true;         ///< otherwise x stays where F and F' were evaluated last
+    /// The scale 1 + |x| is taken from the first so many unknowns, all when absent: the state without a parameter.
+    std::optional<int> unknowns_in_scale{};
+    bool take_last_step = true;  ///< otherwise x stays where F and F' were evaluated last
 };
 
 enum class NewtonStatus : std::uint8_t {
@@ -51,6 +54,12 @@ std::string_view to_string(NewtonStatus status);
 
 /// Throws std::invalid_argument naming the field, its value and the allowed range.
 void check(const NewtonOptions& options);
+
+/// What relative tolerances and limits are relative to.
+template <class V>
+double scale_of(const V& x, const NewtonOptions& options) {
+    return 1.0 + x.head(options.unknowns_in_scale.value_or(static_cast<int>(x.size()))).norm();
+}
 
 /// F and F' at a point. Types that carry more (what the flow saw on the way) derive from it.
 template <class V, class M>
@@ -113,7 +122,7 @@ private:
         }
         evaluated_ = true;
         out_.residual = out_.at.residual.norm();
-        scale_ = 1.0 + out_.x.norm();
+        scale_ = scale_of(out_.x, options_);
         return true;
     }
 

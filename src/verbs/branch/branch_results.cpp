@@ -207,6 +207,15 @@ Presentation present_branch(const ProblemFile& problem, const verbs::BranchResul
     Presentation out;
     out.title = problem.name + ": motions along the " + along_name(result);
     if (!result.reason.empty()) { out.blocks.push_back({"", "Not complete: " + result.reason + ".", {}, {}}); }
+    const bool neutral = std::any_of(result.branches.begin(), result.branches.end(),
+                                     [](const branch::Branch& branch) { return branch.neutral(); });
+    if (neutral) {
+        out.blocks.push_back({"",
+                              "Nothing damps these motions: their multipliers stay on the unit circle or come in pairs "
+                              "mu, 1/mu. None is called stable, and no torus points are looked for.",
+                              {},
+                              {}});
+    }
     out.blocks.push_back(stable_block(problem, result));
     out.blocks.push_back(boundaries_block(problem, result));
     out.blocks.push_back({"",
