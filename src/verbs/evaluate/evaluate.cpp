@@ -44,7 +44,8 @@ std::vector<design::Quantity> quantities_to_report(const design::Problem& proble
     return quantities;
 }
 
-EvaluateResult run_evaluate(const StudyProblem& problem, bool gradients) {
+EvaluateResult run_evaluate(const StudyProblem& problem, bool gradients,
+                            [[maybe_unused]] const numerics::CancelRequest& cancelled) {
     const auto start = std::chrono::steady_clock::now();
     EvaluateResult result;
     const design::Evaluator evaluator(design_problem(problem));

@@ -7,7 +7,8 @@
 
 namespace percuss::verbs {
 
-OrbitResult run_orbit(const StudyProblem& problem, const OrbitOptions& study) {
+OrbitResult run_orbit(const StudyProblem& problem, const OrbitOptions& study,
+                      [[maybe_unused]] const numerics::CancelRequest& cancelled) {
     const auto start = std::chrono::steady_clock::now();
     OrbitResult result;
     const design::Evaluator evaluator(problem.design);
