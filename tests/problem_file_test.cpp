@@ -123,8 +123,7 @@ TEST_CASE("the shipped crawler is the main job") {
 }
 
 TEST_CASE("the shipped oscillators are the published ones") {
-    const auto soft =
-        model::scale(verbs::read_problem(shipped("soft-impact.ini"), {}).design.actuator).parameters;
+    const auto soft = model::scale(verbs::read_problem(shipped("soft-impact.ini"), {}).design.actuator).parameters;
     CHECK(soft[model::spring::force] == 0.152380952381);
     CHECK(soft[model::spring::stop_stiffness] == 29.0);
     const ProblemFile duffing = verbs::read_problem(shipped("duffing.ini"), {});
@@ -163,8 +162,8 @@ TEST_CASE("repeatable options add to the list of the file or replace their entry
     CHECK(read(text, {option("design.limit", "amplitude >= 0.2 mm")}).design.limits.size() == 3);
     // "none" clears the list; what follows it is added.
     CHECK(read(text, {option("design.limit", "none")}).design.limits.empty());
-    CHECK(read(text, {option("design.limit", "none"), option("design.limit", "impulse <= 3 mN s")}).design.limits.size() ==
-          1);
+    CHECK(read(text, {option("design.limit", "none"), option("design.limit", "impulse <= 3 mN s")})
+              .design.limits.size() == 1);
     CHECK(read(text, {option("design.limit", "none")}).design.variables.size() == 1);
     // Variables by their key, objectives by their quantity, whichever way they go.
     const auto varied = read(text, {option("design.variable", "stop.gap in 0.2 mm .. 2 mm"),
@@ -178,8 +177,9 @@ TEST_CASE("repeatable options add to the list of the file or replace their entry
 }
 
 TEST_CASE("comments, and the origin of what stands in lists") {
-    CHECK(read(nondimensional + "; a comment\nomega = 1.9 ; and another # one\n").design.actuator.value(Key::nd_omega) ==
-          1.9);
+    CHECK(
+        read(nondimensional + "; a comment\nomega = 1.9 ; and another # one\n").design.actuator.value(Key::nd_omega) ==
+        1.9);
     const std::string text = spring + "[design]\nlimit = amplitude <= 1 mm\n";
     const ProblemFile problem = read(text, {option("design.limit", "impulse <= 3 mN s")});
     std::vector<problem::Origin> origins;
@@ -210,7 +210,8 @@ TEST_CASE("a variable without a value starts in the middle of its range") {
 }
 
 TEST_CASE("the start of an orbit may be separated by commas or blanks") {
-    const auto start = read(nondimensional, {option("orbit.start", "0.47, -0.15 ,1.17 1.2")}).get<verbs::OrbitOptions>().start;
+    const auto start =
+        read(nondimensional, {option("orbit.start", "0.47, -0.15 ,1.17 1.2")}).get<verbs::OrbitOptions>().start;
     REQUIRE(start);
     CHECK(*start == std::vector<double>{0.47, -0.15, 1.17, 1.2});
     CHECK(has(refusal(nondimensional, {option("orbit.start", "0.47, -0.15")}), "has 4 numbers"));
@@ -350,7 +351,8 @@ TEST_CASE("the hash tells problems apart and units and spelling do not matter") 
     };
     CHECK(limited("0.001") != limited("0.001000000001"));
     const auto ranged = [](const char* upper) {
-        return problem::problem_hash(read(spring, {option("design.variable", std::string("stop.gap in 0 .. ") + upper)}));
+        return problem::problem_hash(
+            read(spring, {option("design.variable", std::string("stop.gap in 0 .. ") + upper)}));
     };
     CHECK(ranged("0.001") != ranged("0.001000000001"));
     CHECK(base.size() == 16);
@@ -358,10 +360,18 @@ TEST_CASE("the hash tells problems apart and units and spelling do not matter") 
 
 TEST_CASE("every key has its line in the table") {
     for (std::size_t i = 0; i < model::key_count; ++i) {
-        CHECK(verbs::find_setting(model::key_info(static_cast<Key>(i)).name) != nullptr);
+        CHECK(problem::find_row(verbs::sections(), model::key_info(static_cast<Key>(i)).name) != nullptr);
     }
-    CHECK(verbs::find_setting("design.limit")->repeatable);
-    CHECK(verbs::find_setting("stop.gapp") == nullptr);
+    CHECK(problem::find_row(verbs::sections(), "design.limit")->repeatable());
+    CHECK(problem::find_row(verbs::sections(), "stop.gapp") == nullptr);
+    // Caps are told.
+    const auto allowed = [](const char* name) { return problem::find_row(verbs::sections(), name)->allowed; };
+    CHECK(allowed("orbit.period") == "whole number, at least 1, at most 64");
+    CHECK(allowed("attractors.cycles") == "whole number, at least 1, at most 1000000");
+    CHECK(allowed("drive.margin") == "at least 0, below 0.5 (50 %)");
+    // Defaults are those of the structs.
+    CHECK(problem::find_row(verbs::sections(), "orbit.period")->fallback ==
+          std::to_string(verbs::OrbitOptions().period));
 }
 
 TEST_CASE("edit distance") {
