@@ -117,7 +117,7 @@ private:
     double tolerance_;
     double coarseness_;
     std::unique_ptr<flow::Integrator> integrator_;
-    flow::Family family_;
+    flow::ParameterFamily family_;
     branch::Departure departure_;
     branch::TraceOptions options_;
 };

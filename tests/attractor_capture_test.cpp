@@ -250,9 +250,9 @@ TEST_CASE("chaos with a known exponent: Ueda's oscillator") {
     options.starts = 100;
     options.max_cycles = 300;
     options.jobs = 2;
-    const Ensemble ensemble = attractor::find_motions({exact, scout}, box, options);
-    REQUIRE(ensemble.motions.size() == 1);  // all starts are told to be on one and the same motion
-    const attractor::Motion& chaos = ensemble.motions[0];
+    const Ensemble ensemble = attractor::find_attractors({exact, scout}, box, options);
+    REQUIRE(ensemble.attractors.size() == 1);  // all starts are told to be on one and the same motion
+    const attractor::Attractor& chaos = ensemble.attractors[0];
     CHECK(chaos.kind == Kind::chaotic);
     CHECK(chaos.period == 0);
     CHECK(chaos.starts == 100);
@@ -288,12 +288,12 @@ TEST_CASE("an impacting actuator in chaos, and what refutes an orbit there") {
     options.starts = 64;
     options.max_cycles = 400;
     const Box box = attractor::ensemble_box(exact, attractor::amplitude_to_expect(scout));
-    const Ensemble ensemble = attractor::find_motions({exact, scout}, box, options);
-    REQUIRE(ensemble.motions.size() == 1);
-    CHECK(ensemble.motions[0].kind == Kind::chaotic);
-    CHECK(ensemble.motions[0].exponent.value == doctest::Approx(0.4).epsilon(0.1));
-    CHECK(ensemble.motions[0].peak_force > 5.0);
-    CHECK(ensemble.motions[0].starts == 64);
+    const Ensemble ensemble = attractor::find_attractors({exact, scout}, box, options);
+    REQUIRE(ensemble.attractors.size() == 1);
+    CHECK(ensemble.attractors[0].kind == Kind::chaotic);
+    CHECK(ensemble.attractors[0].exponent.value == doctest::Approx(0.4).epsilon(0.1));
+    CHECK(ensemble.attractors[0].peak_force > 5.0);
+    CHECK(ensemble.attractors[0].starts == 64);
 }
 
 TEST_CASE("a motion on a torus is quasi-periodic") {

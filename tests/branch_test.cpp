@@ -96,7 +96,7 @@ void check_consistency(const Branch& branch) {
 }
 
 /// Every point is a periodic orbit: solved again stroboscopically it stays where it is.
-void check_orbits(const flow::Family& family, const Branch& branch, std::size_t stride) {
+void check_orbits(const flow::ParameterFamily& family, const Branch& branch, std::size_t stride) {
     for (std::size_t i = 0; i < branch.points.size(); i += stride) {
         const Point& point = branch.points[i];
         CAPTURE(point.parameter);
@@ -185,7 +185,8 @@ TEST_CASE("the same map the other way round, and without the stop") {
 TEST_CASE("points of the branch are the known orbits") {
     const auto integrator = test::membranes();
     const flow::System base{integrator.get(), test::paper_defaults, nullptr};
-    const flow::Family family = flow::along_frequency(base, integrator->linear_resonance(test::paper_defaults));
+    const flow::ParameterFamily family =
+        flow::along_frequency(base, integrator->linear_resonance(test::paper_defaults));
     const test::ReferenceOrbit& start = test::reference_orbits[4];  // clear of the stop at 3.0
     const flow::System there = base.at_omega(start.omega);
     branch::Departure departure;
@@ -297,7 +298,8 @@ TEST_CASE("a stop that cannot pull grazes where the free motion does") {
 TEST_CASE("the motion of three cycles lives on an isola") {
     const auto integrator = test::membranes();
     const flow::System base{integrator.get(), test::paper_defaults, nullptr};
-    const flow::Family family = flow::along_frequency(base, integrator->linear_resonance(test::paper_defaults));
+    const flow::ParameterFamily family =
+        flow::along_frequency(base, integrator->linear_resonance(test::paper_defaults));
     const test::ReferenceOrbit& known = test::reference_orbits[5];
     const flow::System there = base.at_omega(known.omega);
     branch::Departure departure;

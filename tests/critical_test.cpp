@@ -45,7 +45,7 @@ branch::Branch main_branch(const flow::Integrator& integrator, const ParameterVe
     options.from = from;
     options.to = to;
     options.size = size;
-    const flow::Family family = flow::along_frequency(base, integrator.linear_resonance(p));
+    const flow::ParameterFamily family = flow::along_frequency(base, integrator.linear_resonance(p));
     branch::Branch traced = branch::trace(family, departure, options);
     CHECK(traced.end == branch::End::range);
     return traced;
@@ -71,7 +71,7 @@ void check_gradient(const flow::Integrator& integrator, const ParameterVector& p
     std::vector<ParameterVector> directions;
     for (const int parameter : parameters) { directions.push_back(orbit::unit_direction(parameter)); }
     const auto solve = [&](const ParameterVector& there, std::span<const ParameterVector> along) {
-        const flow::Family family = flow::along_frequency(base.with(there), unit);
+        const flow::ParameterFamily family = flow::along_frequency(base.with(there), unit);
         return boundary::solve_critical(family, found.kind, found.point.motion, found.point.omega, found.contact,
                                         found.angle, size, along);
     };
@@ -207,7 +207,7 @@ TEST_CASE("the soft stop of the bilinear oscillator, both laws") {
             const BoundaryPoint& grazing = nearest(branch, Kind::grazing, omega);
             CHECK(std::abs(grazing.point.omega - omega) < 6e-13);
             // A = d sqrt((k - w^2)^2 + c^2 w^2): dw/dA is one over its derivative by w.
-            const flow::Family family = flow::along_frequency({integrator.get(), p, nullptr}, 1.0);
+            const flow::ParameterFamily family = flow::along_frequency({integrator.get(), p, nullptr}, 1.0);
             const ParameterVector by_force = orbit::unit_direction(spring::force);
             const CriticalPoint exact = boundary::solve_critical(family, Kind::grazing, grazing.point.motion, omega,
                                                                  grazing.contact, 0.0, 1.0, {&by_force, 1});
@@ -222,7 +222,7 @@ TEST_CASE("the soft stop of the bilinear oscillator, both laws") {
 TEST_CASE("a boundary that is not there is not found") {
     const auto integrator = membranes();
     const flow::System system{integrator.get(), paper_defaults, nullptr};
-    const flow::Family family = flow::along_frequency(system, 1.7);
+    const flow::ParameterFamily family = flow::along_frequency(system, 1.7);
     const orbit::Orbit found = orbit::polish_orbit(system, test::reference_orbits[0].state, 1);
     REQUIRE(found.ok());
     const orbit::Motion motion = orbit::motion_of(system, found);

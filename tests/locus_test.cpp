@@ -177,12 +177,12 @@ TEST_CASE("families move their parameters as their directions say") {
     for (const Key key : {Key::moving_mass, Key::stop_gap, Key::drive_voltage, Key::prestretch, Key::outer_radius}) {
         CAPTURE(model::key_info(key).name);
         const double value = spec.value(key);
-        const flow::Family alone = design::key_family(system, spec, key, value);
-        const flow::Family both = design::frequency_and_key_family(system, spec, key, value);
+        const flow::ParameterFamily alone = design::key_family(system, spec, key, value);
+        const flow::ParameterFamily both = design::frequency_and_key_family(system, spec, key, value);
         CHECK(alone.dimension() == 1);
         CHECK(both.dimension() == 2);
         CHECK(both.units[1] == value);
-        const auto check = [&](const flow::Family& family, std::vector<double> p) {
+        const auto check = [&](const flow::ParameterFamily& family, std::vector<double> p) {
             const auto directions = family.directions(p);
             REQUIRE(directions.size() == p.size());
             for (std::size_t i = 0; i < p.size(); ++i) {

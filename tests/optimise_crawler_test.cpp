@@ -65,7 +65,7 @@ TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
     INFO(r.reason);
     MESSAGE("peak force ", r.best.value(Quantity::peak_force), " N, KKT residual ", r.kkt_residual, ", ", r.evaluations,
             " evaluations, ", r.seconds, " s");
-    CHECK(r.status == "optimal");
+    CHECK(r.status == verbs::OptimiseStatus::optimal);
     CHECK(r.ending == verbs::Ending::verified);
     CHECK(r.best.status == EvaluationStatus::ok);
     CHECK(r.best.value(Quantity::peak_force) > 3.37);
@@ -80,7 +80,7 @@ TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
         CAPTURE(report.reason);
         CHECK(report.layers == static_cast<double>(i + 1));
         if (i < 3) {
-            CHECK(report.status == "optimal");
+            CHECK(report.status == verbs::OptimiseStatus::optimal);
             CHECK(report.kkt_residual < 1e-6);
             CHECK(report.objective > 0.0);
             best = std::max(best, report.objective);
@@ -89,7 +89,7 @@ TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
     CHECK(best == test::relative(r.best.value(Quantity::peak_force), 1e-12));
     // The reason names what stands in the way.
     const verbs::IntegerCaseReport& four = r.per_layers[3];
-    CHECK(four.status == "infeasible");
+    CHECK(four.status == verbs::OptimiseStatus::infeasible);
     bool names_a_limit = false;
     for (const Limit& limit : solved().problem.design.limits) {
         names_a_limit = names_a_limit || four.reason.find(limit.text) != std::string::npos;
@@ -108,7 +108,7 @@ TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
 
 TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions, looked at from outside") {
     const Solved& s = solved();
-    REQUIRE(s.result.status == "optimal");
+    REQUIRE(s.result.status == verbs::OptimiseStatus::optimal);
     const design::Problem& problem = s.problem.design;
     const design::Evaluator evaluator(problem);
     const Specification spec = specification(problem, s.result.design);
@@ -157,7 +157,7 @@ TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions,
 
 TEST_CASE("a multiplier is what a wider limit gains") {
     verbs::StudyProblem problem = solved().problem;
-    REQUIRE(solved().result.status == "optimal");
+    REQUIRE(solved().result.status == verbs::OptimiseStatus::optimal);
     problem.design.actuator.set(Key::layers, 3.0);
     std::erase_if(problem.design.variables, [](const design::DesignVariable& v) { return v.integer; });
     const verbs::LimitReport* active = nullptr;
@@ -177,7 +177,7 @@ TEST_CASE("a multiplier is what a wider limit gains") {
         problem.design.limits[which].bound = active->limit + (side == 0 ? -change : change);
         const OptimiseStudyResult r = verbs::run_optimise(problem, nullptr, {}, {});
         INFO(r.reason);
-        REQUIRE(r.status == "optimal");
+        REQUIRE(r.status == verbs::OptimiseStatus::optimal);
         CHECK(r.per_layers.size() == 1);
         force[static_cast<std::size_t>(side)] = r.best.value(Quantity::peak_force);
     }
@@ -189,7 +189,7 @@ TEST_CASE("a multiplier is what a wider limit gains") {
 
 TEST_CASE("a thousand random designs hold nothing feasible that is better, nor does the neighbourhood") {
     const Solved& s = solved();
-    REQUIRE(s.result.status == "optimal");
+    REQUIRE(s.result.status == verbs::OptimiseStatus::optimal);
     const design::Problem& problem = s.problem.design;
     const design::Evaluator evaluator(problem);
     design::Demand demand;

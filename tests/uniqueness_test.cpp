@@ -167,7 +167,7 @@ TEST_CASE("tier 3: the low-loss design is moved away from the motion that refute
 
     problem.design.single_stable = design::SingleStable::sampled;
     const auto refuted = verbs::run_optimise(problem, nullptr, {}, {});
-    CHECK(refuted.status == "not-certified");
+    CHECK(refuted.status == verbs::OptimiseStatus::not_certified);
     CHECK(refuted.ending == verbs::Ending::not_certified);
     REQUIRE(refuted.counterexamples.size() == 1);
     CHECK(refuted.counterexamples[0].period == 4);
@@ -175,7 +175,7 @@ TEST_CASE("tier 3: the low-loss design is moved away from the motion that refute
 
     problem.design.single_stable = design::SingleStable::refuted;
     const auto alone = verbs::run_optimise(problem, nullptr, {}, {});
-    CHECK(alone.status == "optimal");
+    CHECK(alone.status == verbs::OptimiseStatus::optimal);
     CHECK(alone.best.uniqueness.verdict == Verdict::unique);
     CHECK(alone.best.uniqueness.tier == 2);
     CHECK(alone.kkt_residual < 1e-6);

@@ -20,13 +20,13 @@ using std::numbers::pi;
 /// with the square of it.
 constexpr double small_speed = 1e-6;
 
-double slow(const flow::Family& family, double parameter, const TraceOptions& options) {
+double slow(const flow::ParameterFamily& family, double parameter, const TraceOptions& options) {
     return small_speed * options.size * family.at(parameter).omega();
 }
 
 /// The sequence with one contact at a very small speed, next to its grazing motion.
-std::optional<Standing> stand_near(const flow::Family& family, const Motion& grazing, double parameter, int contact,
-                                   const TraceOptions& options) {
+std::optional<Standing> stand_near(const flow::ParameterFamily& family, const Motion& grazing, double parameter,
+                                   int contact, const TraceOptions& options) {
     Motion motion = grazing;
     motion.sequence.contacts[static_cast<std::size_t>(contact)].speed = slow(family, parameter, options);
     Piece piece(family, motion, options.size, options.steps);
@@ -54,7 +54,7 @@ Motion without(const flow::System& system, const Motion& motion, int contact, co
 }
 
 /// The way along the branch on which the motion has the contacts of its form and no other.
-std::optional<double> real_side(const flow::Family& family, const Motion& motion, double parameter,
+std::optional<double> real_side(const flow::ParameterFamily& family, const Motion& motion, double parameter,
                                 const TraceOptions& options, double preferred) {
     for (double step : {1e-3, 1e-2, 1e-4}) {
         for (double direction : {preferred, -preferred}) {
@@ -136,7 +136,7 @@ std::optional<Motion> old_form_at(const flow::System& system, const Motion& old_
 
 /// The motion of the old form at the grazing point. Where the hybrid flow meets the new contact there, its multipliers
 /// are no longer those of the old form, and the motion a little before stands for it.
-std::optional<Standing> stand_before(const flow::Family& family, Piece& piece, const Vector& found,
+std::optional<Standing> stand_before(const flow::ParameterFamily& family, Piece& piece, const Vector& found,
                                      const Motion& old_form, double parameter) {
     Look here = look(family, old_form, parameter);
     if (here.status == Look::Status::flow_failed) { return std::nullopt; }
@@ -156,7 +156,7 @@ std::optional<Standing> stand_before(const flow::Family& family, Piece& piece, c
 }
 
 /// The corner's own point: the motion beside it, at the grazing point's parameter.
-Corner corner_at(const flow::Family& family, const Point& near, double parameter, int contact) {
+Corner corner_at(const flow::ParameterFamily& family, const Point& near, double parameter, int contact) {
     Corner corner;
     corner.at = near;
     corner.at.parameter = parameter;
@@ -180,8 +180,8 @@ int contact_leaving(const Motion& motion) {
     return leaving;
 }
 
-std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, const Standing& last, int contact,
-                                    const TraceOptions& options) {
+std::optional<Corner> leave_contact(const flow::ParameterFamily& family, Piece& piece, const Standing& last,
+                                    int contact, const TraceOptions& options) {
     const auto at = static_cast<Eigen::Index>(contact) * piece.motion().sequence.unknowns_per_contact(family.base);
     const double before = last.u[at];
     const double beyond = piece.point()[at];
@@ -217,8 +217,8 @@ std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, co
     return corner;
 }
 
-std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, const Standing& last, const Point& seen,
-                                    const TraceOptions& options) {
+std::optional<Corner> enter_contact(const flow::ParameterFamily& family, Piece& piece, const Standing& last,
+                                    const Point& seen, const TraceOptions& options) {
     const auto [guess, contact] = with_contact(family.at(seen.parameter), seen.motion, unexpected(seen));
     const auto grazing =
         boundary::solve_critical(family, Kind::grazing, guess, seen.parameter, contact, 0.0, options.size);

@@ -27,11 +27,11 @@ inline constexpr int no_contact = -1;
 int contact_leaving(const orbit::Motion& motion);
 
 /// From `last` the piece has stepped to where this contact's entry speed is negative.
-std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, const Standing& last, int contact,
-                                    const TraceOptions& options);
+std::optional<Corner> leave_contact(const flow::ParameterFamily& family, Piece& piece, const Standing& last,
+                                    int contact, const TraceOptions& options);
 
 /// From `last` the piece has stepped to where the hybrid flow meets a contact that the form does not have (`seen`).
-std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, const Standing& last, const Point& seen,
-                                    const TraceOptions& options);
+std::optional<Corner> enter_contact(const flow::ParameterFamily& family, Piece& piece, const Standing& last,
+                                    const Point& seen, const TraceOptions& options);
 
 }  // namespace percuss::branch

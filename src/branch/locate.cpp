@@ -81,7 +81,7 @@ namespace {
 /// Refines one boundary by Newton's method on the extended system, from an interpolation of its test function; when the
 /// result does not lie between the two points, the bracket is halved along the piece and tried again. behind: distance
 /// of b back along the piece from where it stands.
-BoundaryPoint locate(const flow::Family& family, Piece& piece, Kind kind, const Standing& a, const Standing& b,
+BoundaryPoint locate(const flow::ParameterFamily& family, Piece& piece, Kind kind, const Standing& a, const Standing& b,
                      double behind, double size, long& solves) {
     BoundaryPoint found;
     found.kind = kind;
@@ -129,7 +129,7 @@ BoundaryPoint locate(const flow::Family& family, Piece& piece, Kind kind, const 
 
 }  // namespace
 
-std::vector<BoundaryPoint> boundaries_between(const flow::Family& family, Piece& piece, const Standing& a,
+std::vector<BoundaryPoint> boundaries_between(const flow::ParameterFamily& family, Piece& piece, const Standing& a,
                                               const Standing& b, double size, long& solves) {
     struct Found {
         BoundaryPoint boundary;

@@ -24,7 +24,7 @@ bool lies_between(boundary::Kind kind, const Standing& a, const Standing& b);
 
 /// Boundaries between two points of `piece`, which stands at b or beyond, in order. Folds and flips are found first;
 /// torus points between them.
-std::vector<BoundaryPoint> boundaries_between(const flow::Family& family, Piece& piece, const Standing& a,
+std::vector<BoundaryPoint> boundaries_between(const flow::ParameterFamily& family, Piece& piece, const Standing& a,
                                               const Standing& b, double size, long& solves);
 
 /// Where a point lies between two others: share of the way, distance from the straight line in units of its length.

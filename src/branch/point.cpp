@@ -36,7 +36,7 @@ std::vector<flow::Contact> contacts_met(const flow::System& system, const Point&
 
 }  // namespace
 
-Look look(const flow::Family& family, const orbit::Motion& motion, double parameter) {
+Look look(const flow::ParameterFamily& family, const orbit::Motion& motion, double parameter) {
     Look result;
     const flow::System system = family.at(parameter);
     auto strobed = orbit::strobe(system, motion);

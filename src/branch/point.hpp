@@ -4,7 +4,7 @@
 /// stable, and whether its contacts are the ones its form assumes.
 
 #include "boundary/boundary.hpp"
-#include "flow/family.hpp"
+#include "flow/parameter_family.hpp"
 #include "orbit/motion.hpp"
 
 #include <cstdint>
@@ -49,7 +49,7 @@ struct Look {
 /// Follows the motion for one period. A motion of free form is followed without the stop, so that it can be looked at
 /// beyond grazing; its contacts then come from the hybrid flow. A sequence does not close (1e-6) when its contacts are
 /// other than assumed.
-Look look(const flow::Family& family, const orbit::Motion& motion, double parameter);
+Look look(const flow::ParameterFamily& family, const orbit::Motion& motion, double parameter);
 
 /// State at phase 0 of the drive.
 flow::State state_at_zero(const flow::System& system, const Point& point);

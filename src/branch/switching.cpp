@@ -44,7 +44,8 @@ bool alike(const Point& a, const Point& b, double size) {
 
 }  // namespace
 
-std::optional<Departure> departure_at_flip(const flow::Family& family, const BoundaryPoint& flip, double size) {
+std::optional<Departure> departure_at_flip(const flow::ParameterFamily& family, const BoundaryPoint& flip,
+                                           double size) {
     const Motion& motion = flip.point.motion;
     const flow::System system = family.at(flip.point.parameter);
     const auto r = orbit::shoot(system, motion, {});
@@ -70,7 +71,7 @@ std::optional<Departure> departure_at_flip(const flow::Family& family, const Bou
     return departure;
 }
 
-bool passes_through(const flow::Family& family, const Branch& branch, const Point& motion, double size) {
+bool passes_through(const flow::ParameterFamily& family, const Branch& branch, const Point& motion, double size) {
     const double p = motion.parameter;
     const flow::System system = family.at(p);
     const auto is_it = [&](const Motion& guess) {

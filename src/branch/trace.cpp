@@ -16,7 +16,7 @@ using orbit::Motion;
 
 class Tracer {
 public:
-    Tracer(const flow::Family& family, const TraceOptions& options) : family_(family), options_(options) {}
+    Tracer(const flow::ParameterFamily& family, const TraceOptions& options) : family_(family), options_(options) {}
 
     Branch run(const Departure& departure) {
         branch_.period = departure.motion.period;
@@ -306,7 +306,7 @@ private:
     static constexpr double shortest_step = 1e-4;
     static constexpr double departure_distance = 0.02;
 
-    const flow::Family& family_;
+    const flow::ParameterFamily& family_;
     const TraceOptions& options_;
     Branch branch_;
     std::unique_ptr<Piece> piece_;
@@ -316,11 +316,11 @@ private:
 
 }  // namespace
 
-Branch trace(const flow::Family& family, const Departure& departure, const TraceOptions& options) {
+Branch trace(const flow::ParameterFamily& family, const Departure& departure, const TraceOptions& options) {
     return Tracer(family, options).run(departure);
 }
 
-Branch trace_both_ways(const flow::Family& family, const Departure& departure, const TraceOptions& options) {
+Branch trace_both_ways(const flow::ParameterFamily& family, const Departure& departure, const TraceOptions& options) {
     Departure back = departure;
     back.direction = -departure.direction;
     Branch joined = trace(family, back, options);

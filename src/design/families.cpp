@@ -32,13 +32,13 @@ double motion_size(const flow::System& system) {
     return std::max(system.stop_position() - system.integrator->centre(system.parameters), 1e-3);
 }
 
-flow::Family frequency_family(const flow::System& system) {
+flow::ParameterFamily frequency_family(const flow::System& system) {
     return flow::along_frequency(system, system.integrator->linear_resonance(system.parameters));
 }
 
-flow::Family key_family(const flow::System& system, const Specification& spec, Key key, double unit) {
+flow::ParameterFamily key_family(const flow::System& system, const Specification& spec, Key key, double unit) {
     require_key(spec, key);
-    flow::Family family;
+    flow::ParameterFamily family;
     family.base = system;
     family.units = {unit};
     family.parameters = [spec, key](std::span<const double> p) {
@@ -50,10 +50,11 @@ flow::Family key_family(const flow::System& system, const Specification& spec, K
     return family;
 }
 
-flow::Family frequency_and_key_family(const flow::System& system, const Specification& spec, Key key, double unit) {
+flow::ParameterFamily frequency_and_key_family(const flow::System& system, const Specification& spec, Key key,
+                                               double unit) {
     require_key(spec, key);
     const auto omega = static_cast<std::size_t>(system.integrator->info().omega);
-    flow::Family family;
+    flow::ParameterFamily family;
     family.base = system;
     family.units = {system.integrator->linear_resonance(system.parameters), unit};
     family.parameters = [spec, key, omega](std::span<const double> p) {

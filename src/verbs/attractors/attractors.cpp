@@ -37,45 +37,34 @@ public:
         options.seed = problem_.seed;
         options.jobs = problem_.jobs;
         options.max_cycles = study_.cycles;
-        options.stop_requested = stop;
+        options.cancelled = stop;
         if (observer) {
             options.on_progress = [&](double share) { observer(share, "starts followed"); };
         }
-        report(attractor::find_motions({exact_, scout_}, box, options, tuned_));
+        report(attractor::find_attractors({exact_, scout_}, box, options, tuned_));
         return std::move(result_);
     }
 
 private:
     /// Sets the drive frequency; false when there is none to operate at.
     bool operate() {
-        design::OperatingPoint& point = result_.operating_point;
-        const auto given = design::given_omega(problem_.design.actuator, scaled_, *scene_.own);
-        point.edge_kind = design::EdgeKind::given;
-        if (!given && !find_edge(point)) { return false; }
-        point.omega = given.value_or(point.omega);
-        point.drive_frequency = design::drive_frequency(point.omega, scaled_.scales);
-        exact_ = exact_.at_omega(point.omega);
-        scout_ = scout_.at_omega(point.omega);
-        return true;
-    }
-
-    bool find_edge(design::OperatingPoint& point) {
         design::OperationOptions options;
         options.margin = problem_.design.margin;
-        options.scout = &scout_;
-        options.check_neighbours = false;
-        const design::EdgeOperation operation = design::operate_at_edge(exact_, options);
-        point.margin = problem_.design.margin;
-        point.edge_kind = design::to_edge_kind(operation.edge.boundary.kind);
-        if (operation.edge.status != boundary::EdgeStatus::found) {
-            const bool none = operation.edge.status == boundary::EdgeStatus::no_impact;
-            result_.ending = none ? Ending::infeasible : Ending::some_failed;
-            result_.reason = operation.edge.reason;
+        const design::Operation operation =
+            design::operate({problem_.design.actuator, scaled_, exact_, scout_}, options);
+        result_.operating_point = operation.point;
+        if (!operation.found()) {
+            const bool no_impact = operation.status == design::OperationStatus::no_impact;
+            result_.ending = no_impact ? Ending::infeasible : Ending::some_failed;
+            result_.reason = operation.reason;
             return false;
         }
-        point.edge_omega = operation.edge.boundary.omega;
-        point.omega = operation.omega;
-        if (operation.reached.kind == design::Reached::Kind::stable) { tuned_.push_back(operation.reached.orbit); }
+        exact_ = operation.system;
+        scout_ = operation.scout;
+        if (operation.edge) {
+            design::Reached tuned = design::reach_motion(operation);
+            if (tuned.kind == design::Reached::Kind::stable) { tuned_.push_back(std::move(tuned.orbit)); }
+        }
         return true;
     }
 
@@ -108,13 +97,13 @@ private:
     }
 
     void report(const Ensemble& ensemble) {
-        for (const attractor::Motion& motion : ensemble.motions) { result_.attractors.push_back(report(motion)); }
+        for (const attractor::Attractor& motion : ensemble.attractors) { result_.attractors.push_back(report(motion)); }
         result_.starts = ensemble.starts;
         result_.unclassified = ensemble.unclassified;
         result_.failed = ensemble.failed;
         result_.missed_share_bound = ensemble.missed_share_bound;
         result_.cycles = ensemble.cycles + cost_.periods();
-        if (ensemble.status == Ensemble::Status::stopped) {
+        if (ensemble.status == Ensemble::Status::cancelled) {
             result_.ending = Ending::interrupted;
             result_.reason = "stopped early: of " + std::to_string(study_.starts) + " starts " +
                              std::to_string(ensemble.starts) + " were looked at";
@@ -126,7 +115,7 @@ private:
         }
     }
 
-    [[nodiscard]] AttractorReport report(const attractor::Motion& motion) const {
+    [[nodiscard]] AttractorReport report(const attractor::Attractor& motion) const {
         const model::Scales& scales = scaled_.scales;
         AttractorReport out;
         out.kind = motion.kind;

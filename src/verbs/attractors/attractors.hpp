@@ -20,7 +20,7 @@ struct AttractorsOptions {
     std::optional<std::vector<double>> upper;
 };
 
-/// A motion in the problem's units; attractor::Motion tells what the entries mean.
+/// A motion in the problem's units; attractor::Attractor tells what the entries mean.
 struct AttractorReport {
     attractor::Kind kind = attractor::Kind::undecided;
     int period = 0;             ///< drive cycles, 0 for aperiodic motions

@@ -2,6 +2,7 @@
 
 #include "design/families.hpp"
 #include "design/operating_point.hpp"
+#include "design/reach.hpp"
 #include "orbit/polish.hpp"
 
 #include <algorithm>
@@ -53,15 +54,16 @@ BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study)
     const bool has_stop = specification.law != model::StopLaw::none;
     if (!model::has_frequency(specification) && !along_frequency) {
         // The frequency of the operating point is held.
+        flow::System looser = system;
+        looser.integrator = scene.scout.get();
         design::OperationOptions options;
         options.margin = p.design.margin;
-        options.check_neighbours = false;
-        const auto operation = design::operate_at_edge(system, options);
-        if (operation.edge.status != boundary::EdgeStatus::found) {
+        const design::Operation operation = design::operate({specification, scaled, system, looser}, options);
+        if (!operation.found()) {
             throw std::invalid_argument("drive.frequency = edge: this design has no edge to operate at (" +
-                                        operation.edge.reason + "); give a frequency to be held");
+                                        operation.reason + "); give a frequency to be held");
         }
-        specification.set(frequency, from_omega(operation.omega));
+        specification.set(frequency, from_omega(operation.point.omega));
         system = system.with(model::scale(specification).parameters);
     }
     if (along_frequency) {

@@ -4,7 +4,7 @@
 
 #include "branch/trace.hpp"
 #include "design/scene.hpp"
-#include "flow/family.hpp"
+#include "flow/parameter_family.hpp"
 #include "verbs/branch/branch.hpp"
 
 #include <optional>
@@ -38,7 +38,7 @@ struct BranchSetup {
     double from = 0.0;  ///< of the family's parameter
     double to = 0.0;
     double size = 0.1;
-    flow::Family family;
+    flow::ParameterFamily family;
 };
 
 /// Stable periodic motions, up to the longest period wanted, that ensembles of starts lead to at 32 places between two

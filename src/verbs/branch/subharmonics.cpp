@@ -43,10 +43,10 @@ std::vector<FoundMotion> find_motions_along(const BranchSetup& setup, const Bran
         options.seed = setup.problem.seed;
         options.jobs = setup.problem.jobs;
         options.longest_period = std::max(12, study.period);
-        options.stop_requested = stop;
+        options.cancelled = stop;
         const attractor::Box box = attractor::ensemble_box(exact, 0.0);
-        const auto ensemble = attractor::find_motions({exact, scout}, box, options);
-        for (const attractor::Motion& motion : ensemble.motions) {
+        const auto ensemble = attractor::find_attractors({exact, scout}, box, options);
+        for (const attractor::Attractor& motion : ensemble.attractors) {
             const bool wanted = motion.kind == attractor::Kind::periodic && motion.period <= study.period;
             if (wanted) { found.push_back({orbit::motion_of(exact, motion.orbit), at[i]}); }
         }

@@ -88,8 +88,8 @@ LocusResult run_locus(const StudyProblem& problem, const LocusOptions& study, co
     const branch::Branch main = branch::trace(setup.family, *departure, trace_options);
     result.solves += main.solves;
 
-    const flow::Family family = design::frequency_and_key_family(setup.system, setup.specification, *study.along,
-                                                                 std::abs(result.to - result.from));
+    const flow::ParameterFamily family = design::frequency_and_key_family(
+        setup.system, setup.specification, *study.along, std::abs(result.to - result.from));
     branch::LocusOptions options;
     options.from = result.from;
     options.to = result.to;

@@ -47,12 +47,13 @@ std::vector<Column> design_columns(const design::Problem& problem) {
 }
 
 DesignNlp::DesignNlp(const design::Evaluator& evaluator, model::Specification fixed, double objective_scale,
-                     RowSink* rows, std::vector<Exclusion> exclusions)
+                     RowSink* rows, std::vector<Exclusion> exclusions, numerics::CancelRequest cancelled)
     : evaluator_(evaluator),
       fixed_(fixed),
       objective_scale_(objective_scale),
       rows_(rows),
-      exclusions_(std::move(exclusions)) {
+      exclusions_(std::move(exclusions)),
+      cancelled_(std::move(cancelled)) {
     for (const design::DesignVariable& v : problem().variables) {
         if (!v.integer) { variables_.push_back({v.key, v.lower, v.upper, v.logarithmic}); }
     }
@@ -151,7 +152,10 @@ void DesignNlp::add_exclusions(const design::Evaluation& evaluation, const Vecto
 optimise::Evaluation DesignNlp::evaluate(const Vector& x, bool /*want_gradient*/) {
     // Gradients come at a few percent of an evaluation, so there is always one: solvers ask for it at most points.
     const model::Specification spec = specification(x);
-    const design::Evaluation evaluation = evaluator_.evaluate(spec, demand(true));
+    design::Demand demanded = demand(true);
+    demanded.cancelled = cancelled_;
+    const design::Evaluation evaluation = evaluator_.evaluate(spec, demanded);
+    if (cancelled_ && cancelled_()) { return {}; }
     ++statuses_[evaluation.status];
     write_row(spec, evaluation);
     return translate(evaluation, x, true);

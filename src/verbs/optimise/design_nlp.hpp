@@ -3,6 +3,7 @@
 /// A design problem as a nonlinear program: variables mapped to [0, 1], objective and limits scaled to order one.
 
 #include "design/evaluate.hpp"
+#include "numerics/cancel.hpp"
 #include "optimise/nlp.hpp"
 #include "verbs/optimise/exclusion.hpp"
 #include "verbs/study.hpp"
@@ -28,9 +29,10 @@ struct ContinuousVariable {
 class DesignNlp final : public optimise::Nlp {
 public:
     /// `fixed`: the actuator with the enumerated integers set. objective_scale > 0.
-    /// exclusions: constraints after the limits, in their order.
+    /// exclusions: constraints after the limits, in their order. An evaluation that is cancelled fails and leaves no
+    /// row.
     DesignNlp(const design::Evaluator& evaluator, model::Specification fixed, double objective_scale, RowSink* rows,
-              std::vector<Exclusion> exclusions = {});
+              std::vector<Exclusion> exclusions = {}, numerics::CancelRequest cancelled = {});
 
     [[nodiscard]] int variables() const override { return static_cast<int>(variables_.size()); }
     [[nodiscard]] int constraints() const override;
@@ -64,6 +66,7 @@ private:
     double objective_scale_;
     RowSink* rows_;
     std::vector<Exclusion> exclusions_;
+    numerics::CancelRequest cancelled_;
     std::map<design::EvaluationStatus, long> statuses_;
 };
 

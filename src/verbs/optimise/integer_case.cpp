@@ -2,10 +2,30 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace percuss::verbs {
 
 using optimise::Vector;
+
+bool better(const design::Problem& problem, const IntegerCase& a, const IntegerCase& b) {
+    return problem.objectives.front().maximise ? a.report.objective > b.report.objective
+                                               : a.report.objective < b.report.objective;
+}
+
+const IntegerCase* best_of(const design::Problem& problem, const std::vector<IntegerCase>& cases) {
+    const IntegerCase* best = nullptr;
+    for (const IntegerCase& c : cases) {
+        if (!c.verified || c.verified->status != design::EvaluationStatus::ok) { continue; }
+        const bool differ = best != nullptr && c.optimal() != best->optimal();  // a certified case comes first
+        if (best == nullptr || (differ ? c.optimal() : better(problem, c, *best))) { best = &c; }
+    }
+    return best;
+}
+
+IntegerCase* best_of(const design::Problem& problem, std::vector<IntegerCase>& cases) {
+    return const_cast<IntegerCase*>(best_of(problem, std::as_const(cases)));
+}
 
 std::vector<model::Specification> enumerate_integers(const design::Problem& problem) {
     std::vector<model::Specification> cases = {problem.actuator};

@@ -22,8 +22,8 @@ struct IntegerCase {
     optimise::Vector x;
     std::vector<Exclusion> exclusions;  ///< constraints made of counterexamples
     long evaluations = 0;
-    bool optimal = false;
     bool looked_at = false;  ///< by starts (tiers 2 and 3)
+    [[nodiscard]] bool optimal() const { return report.status == OptimiseStatus::optimal; }
 };
 
 /// A limit within this relative distance of its bound is active.
@@ -33,6 +33,13 @@ inline constexpr double activity = 1e-6;
 /// bounds of design variables that it presses on; multipliers in the objective's unit per unit of the limit.
 std::vector<LimitReport> report_limits(const design::Problem& problem, const design::Evaluator& evaluator,
                                        const IntegerCase& best, double objective_scale);
+
+/// Whether the objective of a is better than that of b.
+bool better(const design::Problem& problem, const IntegerCase& a, const IntegerCase& b);
+
+/// The best certified case; without one the best that could be verified; null if there is none.
+const IntegerCase* best_of(const design::Problem& problem, const std::vector<IntegerCase>& cases);
+IntegerCase* best_of(const design::Problem& problem, std::vector<IntegerCase>& cases);
 
 /// All combinations of the integer variables, in order.
 std::vector<model::Specification> enumerate_integers(const design::Problem& problem);

@@ -1,9 +1,26 @@
 #pragma once
 /// \file
 /// Verb `optimise`: layers (and other integer variables) enumerated, one nonlinear program each, the best certified.
+#include "numerics/cancel.hpp"
 #include "verbs/study.hpp"
 
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
 namespace percuss::verbs {
+
+/// How the search for the best design, or of one integer case, ended.
+enum class OptimiseStatus : std::uint8_t {
+    not_run,
+    optimal,        ///< feasible and certified (a KKT point, verified at a tighter tolerance)
+    infeasible,     ///< no design was found that meets every limit
+    not_certified,  ///< feasible, but without certificate, or refuted by another motion
+    budget,         ///< cut short: evaluations spent, or cancelled
+};
+std::string_view to_string(OptimiseStatus status);
+Ending ending_of(OptimiseStatus status);
 
 struct LimitReport {
     std::string name;  ///< quantity, or key for a bound of a design variable
@@ -17,7 +34,7 @@ struct LimitReport {
 
 struct IntegerCaseReport {
     double layers = 0.0;  ///< value of the enumerated variable (NaN if none)
-    std::string status;   ///< optimal | infeasible | not-certified | budget
+    OptimiseStatus status = OptimiseStatus::not_run;
     double objective = design::absent;
     double kkt_residual = design::absent;
     std::vector<std::pair<model::Key, double>> design;
@@ -38,7 +55,7 @@ struct Counterexample {
 
 struct OptimiseStudyResult {
     Ending ending = Ending::not_run;
-    std::string status;                                 ///< optimal | infeasible | not-certified | budget
+    OptimiseStatus status = OptimiseStatus::not_run;
     std::string reason;                                 ///< one sentence when not optimal
     std::vector<std::pair<model::Key, double>> design;  ///< design variables at the best point, SI
     design::Evaluation best;  ///< re-evaluated cold at a tighter tolerance, all quantities, with error estimates
@@ -55,6 +72,6 @@ struct OptimiseStudyResult {
 /// Throws std::invalid_argument for a problem without variables or without exactly one objective.
 /// Rows: every evaluated design (variables, objective, limits, status).
 OptimiseStudyResult run_optimise(const StudyProblem& problem, RowSink* rows, const Observer& observer,
-                                 const StopRequest& stop);
+                                 const numerics::CancelRequest& cancelled);
 
 }  // namespace percuss::verbs

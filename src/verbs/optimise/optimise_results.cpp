@@ -31,7 +31,7 @@ Json limit_of(const LimitReport& limit) {
 
 Json integer_case_of(const IntegerCaseReport& report) {
     return {{"layers", report.layers},
-            {"status", report.status},
+            {"status", to_string(report.status)},
             {"objective", report.objective},
             {"kkt_residual", report.kkt_residual},
             {"design", design_of(report.design)},
@@ -83,8 +83,8 @@ Block integer_cases_block(const ProblemFile& problem, const OptimiseStudyResult&
         const std::string objective = objectives.empty()
                                         ? number(report.objective)
                                         : quantity_text(problem, objectives.front().quantity, report.objective);
-        block.rows.push_back(
-            {number(report.layers), report.status, objective, number(report.kkt_residual, 2), report.reason});
+        block.rows.push_back({number(report.layers), std::string(to_string(report.status)), objective,
+                              number(report.kkt_residual, 2), report.reason});
     }
     return block;
 }
@@ -110,7 +110,7 @@ Block counterexamples_block(const ProblemFile& problem, const OptimiseStudyResul
 
 /// What it cost to be alone.
 Block price_block(const ProblemFile& problem, const OptimiseStudyResult& result) {
-    if (std::isnan(result.objective_unrefuted) || result.status != "optimal") { return sentence(""); }
+    if (std::isnan(result.objective_unrefuted) || result.status != OptimiseStatus::optimal) { return sentence(""); }
     const Quantity objective = problem.design.objectives.front().quantity;
     const double now = result.best.value(objective);
     return sentence("Price of being the only stable motion found: " +
@@ -123,7 +123,7 @@ Block price_block(const ProblemFile& problem, const OptimiseStudyResult& result)
 
 std::string optimise_document(const ProblemFile& problem, const OptimiseStudyResult& result) {
     Json out = document_beginning(problem, "percuss/optimise/1");
-    out["status"] = result.status;
+    out["status"] = to_string(result.status);
     out["reason"] = result.reason;
     out["objective"] = Json::object();
     for (const design::Objective& objective : problem.design.objectives) {
@@ -158,7 +158,7 @@ std::string optimise_document(const ProblemFile& problem, const OptimiseStudyRes
 Presentation present_optimum(const ProblemFile& problem, const OptimiseStudyResult& result) {
     Presentation out;
     out.title = problem.name + ": optimum";
-    out.blocks.push_back(results::status_sentence(result.status, result.reason));
+    out.blocks.push_back(results::status_sentence(to_string(result.status), result.reason));
     out.blocks.push_back(design_block(result.design));
     add_evaluation(problem, result.best, WithEdge::yes, out);
     out.blocks.push_back(limits_block(problem, result));
@@ -185,8 +185,8 @@ std::string layers_csv(const ProblemFile& problem, const OptimiseStudyResult& re
     columns.push_back({"reason", ""});
     std::vector<std::vector<std::string>> rows;
     for (const IntegerCaseReport& report : result.per_layers) {
-        std::vector<std::string> row = {cell(report.layers), report.status, cell(report.objective),
-                                        cell(report.kkt_residual)};
+        std::vector<std::string> row = {cell(report.layers), std::string(to_string(report.status)),
+                                        cell(report.objective), cell(report.kkt_residual)};
         for (const design::DesignVariable& variable : problem.design.variables) {
             double value = design::absent;
             for (const auto& [key, at] : report.design) { value = key == variable.key ? at : value; }

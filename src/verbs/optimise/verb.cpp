@@ -22,7 +22,7 @@ Outcome run(Session& session) {
     session.write("gradients.csv", gradients_csv(problem, result.best));
     session.write("layers.csv", layers_csv(problem, result));
     session.write("limits.csv", limits_csv(problem, result));
-    return {result.ending, result.status, result.reason, optimise_document(problem, result),
+    return {result.ending, std::string(to_string(result.status)), result.reason, optimise_document(problem, result),
             present_optimum(problem, result)};
 }
 

@@ -39,32 +39,20 @@ void check(const SimulateOptions& study) {
 
 /// False when there is no frequency to run at; the result says why.
 bool choose_frequency(const StudyProblem& problem, Scenario& at, SimulateResult& result) {
-    design::OperatingPoint& point = result.operating_point;
-    const auto given = design::given_omega(problem.design.actuator, at.scaled, *at.scene.own);
-    if (given) {
-        point.omega = *given;
-        point.edge_kind = design::EdgeKind::given;
-    } else {
-        const flow::System scout{at.scene.scout.get(), at.scaled.parameters, &at.cost};
-        design::OperationOptions options;
-        options.margin = problem.design.margin;
-        options.scout = &scout;
-        options.check_neighbours = false;
-        const design::EdgeOperation operation = design::operate_at_edge(at.system, options);
-        if (operation.edge.status != boundary::EdgeStatus::found) {
-            const bool no_impact = operation.edge.status == boundary::EdgeStatus::no_impact;
-            result.ending = no_impact ? Ending::infeasible : Ending::some_failed;
-            result.reason = "there is no edge to operate at: " + operation.edge.reason;
-            return false;
-        }
-        point.omega = operation.omega;
-        point.margin = problem.design.margin;
-        point.edge_omega = operation.edge.boundary.omega;
-        point.edge_kind = design::to_edge_kind(operation.edge.boundary.kind);
-        at.edge_orbit = operation.reached.orbit;
+    const flow::System scout{at.scene.scout.get(), at.scaled.parameters, &at.cost};
+    design::OperationOptions options;
+    options.margin = problem.design.margin;
+    const design::Operation operation =
+        design::operate({problem.design.actuator, at.scaled, at.system, scout}, options);
+    result.operating_point = operation.point;
+    if (!operation.found()) {
+        const bool no_impact = operation.status == design::OperationStatus::no_impact;
+        result.ending = no_impact ? Ending::infeasible : Ending::some_failed;
+        result.reason = "there is no edge to operate at: " + operation.reason;
+        return false;
     }
-    point.drive_frequency = design::drive_frequency(point.omega, at.scaled.scales);
-    at.system = at.system.at_omega(point.omega);
+    at.system = operation.system;
+    if (operation.edge) { at.edge_orbit = design::reach_motion(operation).orbit; }
     return true;
 }
 

@@ -11,7 +11,7 @@
 namespace percuss::flow {
 
 /// The systems `base` with the parameters p of a continuation: their parameter vectors and how those move with each p.
-struct Family {
+struct ParameterFamily {
     System base;
     std::function<ParameterVector(std::span<const double> p)> parameters;
     /// One entry per p.
@@ -24,6 +24,6 @@ struct Family {
 };
 
 /// The drive frequency omega as the only parameter.
-Family along_frequency(const System& base, double unit);
+ParameterFamily along_frequency(const System& base, double unit);
 
 }  // namespace percuss::flow

@@ -1,10 +1,10 @@
-#include "flow/family.hpp"
+#include "flow/parameter_family.hpp"
 
 namespace percuss::flow {
 
-Family along_frequency(const System& base, double unit) {
+ParameterFamily along_frequency(const System& base, double unit) {
     const auto index = static_cast<std::size_t>(base.integrator->info().omega);
-    Family family;
+    ParameterFamily family;
     family.base = base;
     family.units = {unit};
     family.parameters = [base, index](std::span<const double> p) {

@@ -1,4 +1,4 @@
-#include "attractor/motion.hpp"
+#include "attractor/attractor.hpp"
 
 #include "orbit/polish.hpp"
 
@@ -24,8 +24,8 @@ std::string_view to_string(Kind kind) {
     return "unknown";
 }
 
-Motion measure(const flow::System& exact, const orbit::Orbit& orbit) {
-    Motion motion;
+Attractor measure(const flow::System& exact, const orbit::Orbit& orbit) {
+    Attractor motion;
     motion.kind = Kind::periodic;
     motion.period = orbit.map.period;
     motion.orbit = orbit;
@@ -42,10 +42,10 @@ Motion measure(const flow::System& exact, const orbit::Orbit& orbit) {
     return motion;
 }
 
-std::optional<Motion> measure(const Wander& wander) {
+std::optional<Attractor> measure(const Wander& wander) {
     const Exponent& exponent = wander.exponent;
     if (wander.status != WanderStatus::ok || exponent.negative()) { return std::nullopt; }
-    Motion motion;
+    Attractor motion;
     const bool bounded = exponent.error < sharp_error && wander.swing < bounded_swing;
     motion.kind = exponent.positive() ? Kind::chaotic : bounded ? Kind::quasi_periodic : Kind::undecided;
     motion.state = wander.state;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A motion that starts were led to, measured. Nondimensional.
+/// An attractor that starts were led to, measured. Nondimensional.
 
 #include "attractor/exponent.hpp"
 #include "attractor/known.hpp"
@@ -18,7 +18,7 @@ enum class Kind : std::uint8_t {
 };
 std::string_view to_string(Kind kind);
 
-struct Motion {
+struct Attractor {
     Kind kind = Kind::undecided;
     int period = 0;       ///< drive cycles, 0 for aperiodic motions
     orbit::Orbit orbit;   ///< periodic motions: of the exact integrator, strobed where the longest flight follows
@@ -36,10 +36,10 @@ struct Motion {
 };
 
 /// A stable periodic orbit measured.
-Motion measure(const flow::System& exact, const orbit::Orbit& orbit);
+Attractor measure(const flow::System& exact, const orbit::Orbit& orbit);
 
 /// An aperiodic motion measured, from a run that ended well; nothing when its exponent is negative beyond its error:
 /// the motion is still settling.
-std::optional<Motion> measure(const Wander& wander);
+std::optional<Attractor> measure(const Wander& wander);
 
 }  // namespace percuss::attractor
