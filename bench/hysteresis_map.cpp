@@ -24,7 +24,7 @@
 #include "scenes.hpp"
 #include "timing.hpp"
 #include "verbs/branch/branch.hpp"
-#include "verbs/problem_file.hpp"
+#include "verbs/verbs.hpp"
 
 #include <cstdio>
 #include <limits>
@@ -54,7 +54,7 @@ branch::Branch hysteresis_map(const verbs::StudyProblem& problem) {
 
 verbs::StudyProblem paper_problem() {
     verbs::StudyProblem problem =
-        verbs::read_problem(PERCUSS_BENCH_DATA "/../problems/wu2022-nondimensional.ini", {}).study;
+        verbs::study_problem(verbs::read_problem(PERCUSS_BENCH_DATA "/../problems/wu2022-nondimensional.ini", {}));
     problem.design.solver.tolerance = map_tolerance;
     return problem;
 }

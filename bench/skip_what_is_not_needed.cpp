@@ -23,7 +23,7 @@
 #include "design/evaluate.hpp"
 #include "scenes.hpp"
 #include "timing.hpp"
-#include "verbs/problem_file.hpp"
+#include "verbs/verbs.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -147,7 +147,7 @@ struct Evaluations {
 };
 
 design::Problem read_design(const std::filesystem::path& file) {
-    design::Problem problem = verbs::read_problem(file, {}).study.design;
+    design::Problem problem = verbs::read_problem(file, {}).design;
     if (problem.actuator.family == model::Family::dielectric_elastomer_si) {  // near the optimum of crawler.ini
         problem.actuator.set(model::Key::layers, 3.0);
         problem.actuator.set(model::Key::stop_gap, 0.35e-3);

@@ -2,7 +2,7 @@
 /// \file
 /// The problem files that come with the program.
 
-#include "verbs/problem_file.hpp"
+#include "verbs/verbs.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace percuss::test {
 inline verbs::StudyProblem shipped_problem(const std::string& name) {
     const char* source = std::getenv("PERCUSS_SOURCE_DIR");
     const std::filesystem::path root = source == nullptr ? "." : source;
-    return verbs::read_problem(root / "problems" / (name + ".ini"), {}).study;
+    return verbs::study_problem(verbs::read_problem(root / "problems" / (name + ".ini"), {}));
 }
 
 }  // namespace percuss::test

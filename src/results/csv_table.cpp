@@ -59,6 +59,8 @@ void CsvTable::end_line() {
     if (!stream_) { throw std::runtime_error(partial_.string() + " cannot be written"); }
 }
 
+std::string cell(double value) { return std::isnan(value) ? "" : model::exact_text(value); }
+
 std::string csv_text(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows) {
     std::string text;
     for (std::size_t i = 0; i < columns.size(); ++i) { text += (i == 0 ? "" : ",") + title(columns[i]); }

@@ -36,6 +36,9 @@ private:
     std::size_t width_ = 0;
 };
 
+/// A number as a cell that reads back exactly; empty for NaN.
+std::string cell(double value);
+
 /// A whole table as text in the same form; cells are written as they are.
 std::string csv_text(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows);
 

@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// What all studies share: the problem with the optimiser's settings, a deadline, an observer, a row sink.
+/// What all runs of verbs share: the problem with the optimiser's settings, an observer, how it ended.
 
 #include "design/evaluation.hpp"
 #include "design/problem.hpp"
 #include "numerics/cancel.hpp"
 #include "results/row_sink.hpp"
+#include "verbs/optimiser_options.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -14,14 +15,6 @@
 #include <vector>
 
 namespace percuss::verbs {
-
-struct OptimiserOptions {
-    std::string method = "ipopt";  ///< names of optimise::methods()
-    int starts = 2;                ///< local solves per layer count
-    int samples = 32;              ///< space-filling designs looked at before, per layer count
-    int max_evaluations = 4000;    ///< per layer count
-    double tolerance = 1e-6;       ///< KKT residual at which a point is certified
-};
 
 struct StudyProblem {
     design::Problem design;
@@ -45,7 +38,16 @@ using StopRequest = numerics::CancelRequest;
 using results::Column;
 using results::RowSink;
 
-/// How a study ended; maps onto the exit codes 0, 3, 4, 5, 130.
-enum class Ending : std::uint8_t { not_run, verified, infeasible, not_certified, budget, some_failed, interrupted };
+/// How a run ended; cli maps it onto the exit codes.
+enum class Ending : std::uint8_t {
+    not_run,
+    verified,
+    infeasible,
+    not_certified,
+    budget,
+    some_failed,
+    interrupted,
+    refused,  ///< verb check: the problem has troubles
+};
 
 }  // namespace percuss::verbs

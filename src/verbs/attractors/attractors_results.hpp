@@ -2,11 +2,12 @@
 /// \file
 /// Results of verb `attractors`.
 
+#include "problem/problem_file.hpp"
+#include "results/presentation.hpp"
 #include "verbs/attractors/attractors.hpp"
-#include "verbs/presentation.hpp"
-#include "verbs/problem_file.hpp"
 
 #include <string>
+#include <string_view>
 
 namespace percuss::verbs {
 
@@ -15,13 +16,16 @@ namespace percuss::verbs {
 /// "failed","missed_share_bound","box":{"lower":[],"upper":[]},"attractors":[{"kind":"periodic|chaotic|quasi-periodic|
 /// undecided","period" (0: aperiodic),"state":[],"peak_force","amplitude","x_max","x_min","contacts" (per period; null:
 /// aperiodic),"contacts_per_cycle","multipliers":[[re,im]],"max_multiplier","lyapunov":{"value","error"} per drive
-/// cycle,"lyapunov_per_time":{"value","error"} per nondimensional time,"starts","share","share_lower","share_upper"}],
-/// "cost":{"seconds","periods"}}
-std::string attractors_document(const ProblemFile& problem, const verbs::AttractorsResult& result);
+/// cycle,"lyapunov_per_time":{"value","error"} per second (nondimensional problems: per unit of
+/// time),"starts","share","share_lower","share_upper"}], "cost":{"seconds","periods"}}
+std::string attractors_document(const problem::ProblemFile& problem, const AttractorsResult& result);
 
 /// One row per motion.
-std::string attractors_csv(const ProblemFile& problem, const verbs::AttractorsResult& result);
+std::string attractors_csv(const problem::ProblemFile& problem, const AttractorsResult& result);
 
-Presentation present_attractors(const ProblemFile& problem, const verbs::AttractorsResult& result);
+results::Presentation present_attractors(const problem::ProblemFile& problem, const AttractorsResult& result);
+
+/// The word for how it ended: "status" of the document.
+std::string_view status_of(const AttractorsResult& result);
 
 }  // namespace percuss::verbs

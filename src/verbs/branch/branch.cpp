@@ -188,8 +188,8 @@ BranchResult run_branch(const StudyProblem& problem, const BranchOptions& study,
     return result;
 }
 
-model::Scales scales_at(const StudyProblem& problem, const BranchResult& result, double parameter) {
-    model::Specification spec = problem.design.actuator;
+model::Scales scales_at(const design::Problem& problem, const BranchResult& result, double parameter) {
+    model::Specification spec = problem.actuator;
     if (!result.along_frequency) { spec.set(result.along, parameter); }
     return model::scale(spec).scales;
 }

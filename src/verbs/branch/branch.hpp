@@ -45,6 +45,6 @@ BranchResult run_branch(const StudyProblem& problem, const BranchOptions& study,
                         const StopRequest& stop);
 
 /// Scales at a point of the result, which depend on the key that is varied.
-model::Scales scales_at(const StudyProblem& problem, const BranchResult& result, double parameter);
+model::Scales scales_at(const design::Problem& problem, const BranchResult& result, double parameter);
 
 }  // namespace percuss::verbs

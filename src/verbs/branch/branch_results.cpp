@@ -3,17 +3,26 @@
 #include "design/scene.hpp"
 #include "model/number_text.hpp"
 #include "results/csv_table.hpp"
+#include "results/json.hpp"
+#include "verbs/frequencies.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 namespace percuss::verbs {
+
+using problem::ProblemFile;
+using problem::text_of;
+using problem::units_of;
+using results::Block;
+using results::cell;
+using results::Column;
+using results::csv_text;
+using results::Json;
+using results::Presentation;
 
 namespace {
 
-using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using boundary::Kind;
 using branch::BoundaryPoint;
 using branch::Branch;
@@ -24,7 +33,8 @@ std::string_view kind_name(const BoundaryPoint& found) { return boundary::to_str
 
 /// A point in the problem's units.
 struct UserPoint {
-    double omega = 0.0;
+    double omega = 0.0;  ///< nondimensional
+    double time = 1.0;   ///< unit of time there [s]
     double drive_frequency = 0.0;
     double value = 0.0;  ///< of the key along which the branch was followed
     double amplitude = 0.0;
@@ -33,10 +43,11 @@ struct UserPoint {
     double peak_force = 0.0;
 };
 
-UserPoint to_user(const ProblemFile& problem, const verbs::BranchResult& result, const Point& p) {
-    const model::Scales scales = verbs::scales_at(problem.study, result, p.parameter);
+UserPoint to_user(const ProblemFile& problem, const BranchResult& result, const Point& p) {
+    const model::Scales scales = scales_at(problem.design, result, p.parameter);
     UserPoint out;
     out.omega = p.omega;
+    out.time = scales.time;
     out.drive_frequency = design::drive_frequency(p.omega, scales);
     out.value = p.parameter;
     out.amplitude = scales.length * p.amplitude();
@@ -46,9 +57,11 @@ UserPoint to_user(const ProblemFile& problem, const verbs::BranchResult& result,
     return out;
 }
 
-Json point_of(const ProblemFile& problem, const verbs::BranchResult& result, const Point& p) {
+Json point_of(const ProblemFile& problem, const BranchResult& result, const Point& p) {
     const UserPoint user = to_user(problem, result, p);
-    Json out = {{"omega", user.omega}, {"drive_frequency", user.drive_frequency}};
+    Json out;
+    add_omega(problem, user.omega, user.time, out);
+    out["drive_frequency"] = user.drive_frequency;
     if (!result.along_frequency) { out["value"] = user.value; }
     out["amplitude"] = user.amplitude;
     out["x_max"] = user.x_max;
@@ -61,45 +74,61 @@ Json point_of(const ProblemFile& problem, const verbs::BranchResult& result, con
 }
 
 /// Number of the boundary among those of all branches.
-int global_index(const verbs::BranchResult& result, std::size_t branch, int local) {
+int global_index(const BranchResult& result, std::size_t branch, int local) {
     int index = local;
     for (std::size_t i = 0; i < branch; ++i) { index += static_cast<int>(result.branches[i].boundaries.size()); }
     return index;
 }
 
-Json boundary_of(const ProblemFile& problem, const verbs::BranchResult& result, std::size_t b, std::size_t i) {
+/// A difference in what is varied: of omega in the unit in which points tell it.
+double told(const ProblemFile& problem, const BranchResult& result, double difference, double time) {
+    return result.along_frequency ? in_user_units(problem, difference, time) : difference;
+}
+
+/// d(omega)/d(key) in rad/s from that of the nondimensional w: omega = w / Gamma, and Gamma depends on the key.
+double told_derivative(const ProblemFile& problem, const BranchResult& result, const Point& p, double d,
+                       model::Key key) {
+    if (!result.along_frequency || problem::is_nondimensional(problem.design)) { return d; }
+    const double time = model::scale(problem.design.actuator).scales.time;
+    const double d_time = model::scale_derivative(problem.design.actuator, key).scales.time;
+    return d / time - p.omega * d_time / (time * time);
+}
+
+Json boundary_of(const ProblemFile& problem, const BranchResult& result, std::size_t b, std::size_t i) {
     const BoundaryPoint& found = result.branches[b].boundaries[i];
     const UserPoint user = to_user(problem, result, found.point);
-    const model::Scales scales = verbs::scales_at(problem.study, result, found.point.parameter);
-    Json out = {
-        {"kind", kind_name(found)}, {"branch", b}, {"omega", user.omega}, {"drive_frequency", user.drive_frequency}};
+    const model::Scales scales = scales_at(problem.design, result, found.point.parameter);
+    Json out = {{"kind", kind_name(found)}, {"branch", b}};
+    add_omega(problem, user.omega, user.time, out);
+    out["drive_frequency"] = user.drive_frequency;
     if (!result.along_frequency) { out["value"] = user.value; }
-    out["uncertainty"] = found.uncertainty;
+    out["uncertainty"] = told(problem, result, found.uncertainty, user.time);
     out["peak_force"] = user.peak_force;
     out["amplitude"] = user.amplitude;
     out["contacts"] = found.point.contacts.size();
     out["max_multiplier"] = found.point.max_multiplier();
-    out["state"] = design::to_user(found.state_at_zero, scales, problem_states(problem));
+    out["state"] = design::to_user(found.state_at_zero, scales, problem::problem_states(problem));
     out["jump_with"] = found.partner >= 0 ? Json(global_index(result, b, found.partner)) : Json(nullptr);
     if (found.kind == Kind::flip) { out["symmetry"] = found.of_half_cycle; }
     if (b < result.gradients.size() && i < result.gradients[b].size()) {
         Json gradients = Json::object();
         for (std::size_t k = 0; k < result.gradient_keys.size(); ++k) {
-            gradients[std::string(model::key_info(result.gradient_keys[k]).name)] =
-                result.gradients[b][i].d_parameter[k];
+            const model::Key key = result.gradient_keys[k];
+            const double d = result.gradients[b][i].d_parameter[k];
+            gradients[model::key_info(key).name] = told_derivative(problem, result, found.point, d, key);
         }
         out["gradients"] = {{result.along_frequency ? "omega" : "value", std::move(gradients)}};
     }
     return out;
 }
 
-std::string along_name(const verbs::BranchResult& result) {
+std::string along_name(const BranchResult& result) {
     return result.along_frequency ? "drive frequency" : std::string(model::key_info(result.along).name);
 }
 
-std::string place_text(const ProblemFile& problem, const verbs::BranchResult& result, const Point& p) {
+std::string place_text(const ProblemFile& problem, const BranchResult& result, const Point& p) {
     const UserPoint user = to_user(problem, result, p);
-    if (!result.along_frequency) { return text_of(result.along, user.value); }
+    if (!result.along_frequency) { return problem::text_of(result.along, user.value); }
     const std::string omega = model::number_text(user.omega, 12);
     return units_of(problem) == "si"
              ? omega + " (" + text_of(problem, Quantity::drive_frequency, user.drive_frequency) + ")"
@@ -110,7 +139,7 @@ std::string end_text(branch::End end, const std::string& reason) {
     return std::string(branch::to_string(end)) + (reason.empty() ? "" : " (" + reason + ")");
 }
 
-Block boundaries_block(const ProblemFile& problem, const verbs::BranchResult& result) {
+Block boundaries_block(const ProblemFile& problem, const BranchResult& result) {
     Block block{"Boundaries",
                 "",
                 {"branch", "kind", result.along_frequency ? "omega" : along_name(result), "uncertainty", "peak force",
@@ -138,7 +167,7 @@ Block boundaries_block(const ProblemFile& problem, const verbs::BranchResult& re
 }
 
 /// Stretches of a branch that are stable, with their ends.
-Block stable_block(const ProblemFile& problem, const verbs::BranchResult& result) {
+Block stable_block(const ProblemFile& problem, const BranchResult& result) {
     Block block{"Branches", "", {"branch", "period", "points", "stable points", "from", "to", "begins", "ends"}, {}};
     for (std::size_t b = 0; b < result.branches.size(); ++b) {
         const Branch& branch = result.branches[b];
@@ -159,11 +188,9 @@ Block stable_block(const ProblemFile& problem, const verbs::BranchResult& result
     return block;
 }
 
-std::string cell(double value) { return std::isnan(value) ? "" : model::exact_text(value); }
-
 }  // namespace
 
-std::string branch_document(const ProblemFile& problem, const verbs::BranchResult& result) {
+std::string branch_document(const ProblemFile& problem, const BranchResult& result) {
     Json out = {{"schema", "percuss/branch/1"}, {"units", units_of(problem)}};
     out["reason"] = result.reason;
     out["along"] = std::string(model::key_info(result.along).name);
@@ -192,18 +219,21 @@ std::string branch_document(const ProblemFile& problem, const verbs::BranchResul
             const int partner = boundaries[i].partner;
             if (partner > static_cast<int>(i)) {
                 const auto& other = boundaries[static_cast<std::size_t>(partner)];
-                out["jumps"].push_back(
-                    {{"boundaries", {global_index(result, b, static_cast<int>(i)), global_index(result, b, partner)}},
-                     {"omega", boundaries[i].point.omega},
-                     {"distance", std::abs(boundaries[i].point.parameter - other.point.parameter)}});
+                const UserPoint user = to_user(problem, result, boundaries[i].point);
+                const double distance = std::abs(boundaries[i].point.parameter - other.point.parameter);
+                Json jump = {{"boundaries", Json::array({global_index(result, b, static_cast<int>(i)),
+                                                         global_index(result, b, partner)})}};
+                add_omega(problem, user.omega, user.time, jump);
+                jump["distance"] = told(problem, result, distance, user.time);
+                out["jumps"].push_back(std::move(jump));
             }
         }
     }
     out["cost"] = {{"seconds", result.seconds}, {"periods", result.periods}, {"orbit_solves", result.solves}};
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return results::printed(out);
 }
 
-Presentation present_branch(const ProblemFile& problem, const verbs::BranchResult& result) {
+Presentation present_branch(const ProblemFile& problem, const BranchResult& result) {
     Presentation out;
     out.title = problem.name + ": motions along the " + along_name(result);
     if (!result.reason.empty()) { out.blocks.push_back({"", "Not complete: " + result.reason + ".", {}, {}}); }
@@ -224,14 +254,14 @@ Presentation present_branch(const ProblemFile& problem, const verbs::BranchResul
                               model::number_text(result.seconds, 3) + " s",
                           {},
                           {}});
-    std::erase_if(out.blocks, [](const Block& block) { return block.sentence.empty() && block.rows.empty(); });
+    results::drop_empty_blocks(out);
     return out;
 }
 
-std::string branch_csv(const ProblemFile& problem, const verbs::BranchResult& result) {
+std::string branch_csv(const ProblemFile& problem, const BranchResult& result) {
     const bool si = units_of(problem) == "si";
     const std::string m = si ? "m" : "";
-    std::vector<results::Column> columns = {
+    std::vector<Column> columns = {
         {"branch", ""}, {"period", "drive cycles"}, {"omega", "rad per Gamma"}, {"drive_frequency", si ? "Hz" : ""}};
     if (!result.along_frequency) {
         const std::string_view unit = model::key_info(result.along).unit;
@@ -254,12 +284,12 @@ std::string branch_csv(const ProblemFile& problem, const verbs::BranchResult& re
             rows.push_back(std::move(row));
         }
     }
-    return results::csv_text(columns, rows);
+    return csv_text(columns, rows);
 }
 
-std::string boundaries_csv(const ProblemFile& problem, const verbs::BranchResult& result) {
+std::string boundaries_csv(const ProblemFile& problem, const BranchResult& result) {
     const bool si = units_of(problem) == "si";
-    std::vector<results::Column> columns = {
+    std::vector<Column> columns = {
         {"branch", ""}, {"kind", ""}, {"omega", "rad per Gamma"}, {"drive_frequency", si ? "Hz" : ""}};
     if (!result.along_frequency) {
         const std::string_view unit = model::key_info(result.along).unit;
@@ -283,7 +313,7 @@ std::string boundaries_csv(const ProblemFile& problem, const verbs::BranchResult
             rows.push_back(std::move(row));
         }
     }
-    return results::csv_text(columns, rows);
+    return csv_text(columns, rows);
 }
 
 }  // namespace percuss::verbs

@@ -1,11 +1,10 @@
 #pragma once
 /// \file
-/// Results of verbs `branch` and `locus`.
+/// Results of verb `branch`.
 
+#include "problem/problem_file.hpp"
+#include "results/presentation.hpp"
 #include "verbs/branch/branch.hpp"
-#include "verbs/locus/locus.hpp"
-#include "verbs/presentation.hpp"
-#include "verbs/problem_file.hpp"
 
 #include <string>
 
@@ -17,16 +16,10 @@ namespace percuss::verbs {
 /// belongs to with its neighbour), "symmetry" (a flip of the half-cycle map: the mirror symmetry is lost), "gradients";
 /// "jumps":
 /// [{"boundaries":[i, j],"distance"}]; "cost".
-std::string branch_document(const ProblemFile& problem, const verbs::BranchResult& result);
-Presentation present_branch(const ProblemFile& problem, const verbs::BranchResult& result);
+std::string branch_document(const problem::ProblemFile& problem, const BranchResult& result);
+results::Presentation present_branch(const problem::ProblemFile& problem, const BranchResult& result);
 /// One row per point; one row per boundary.
-std::string branch_csv(const ProblemFile& problem, const verbs::BranchResult& result);
-std::string boundaries_csv(const ProblemFile& problem, const verbs::BranchResult& result);
-
-/// percuss/locus/1. Points of all curves in order, each with its "curve"; "cusps", and "turns" where the value turns
-/// back without a cusp; "curves": how each ends.
-std::string locus_document(const ProblemFile& problem, const verbs::LocusResult& result);
-Presentation present_locus(const ProblemFile& problem, const verbs::LocusResult& result);
-std::string locus_csv(const ProblemFile& problem, const verbs::LocusResult& result);
+std::string branch_csv(const problem::ProblemFile& problem, const BranchResult& result);
+std::string boundaries_csv(const problem::ProblemFile& problem, const BranchResult& result);
 
 }  // namespace percuss::verbs

@@ -44,7 +44,13 @@ std::vector<design::Quantity> quantities_to_report(const design::Problem& proble
     return quantities;
 }
 
-EvaluateResult run_evaluate(const StudyProblem& problem, bool gradients) {
+bool was_cancelled(const design::Evaluation& evaluation, const numerics::CancelRequest& cancelled) {
+    const bool cut_short = evaluation.status == design::EvaluationStatus::failed ||
+                           evaluation.uniqueness.verdict == design::Verdict::not_checked;
+    return cut_short && cancelled && cancelled();
+}
+
+EvaluateResult run_evaluate(const StudyProblem& problem, bool gradients, const numerics::CancelRequest& cancelled) {
     const auto start = std::chrono::steady_clock::now();
     EvaluateResult result;
     const design::Evaluator evaluator(design_problem(problem));
@@ -52,8 +58,10 @@ EvaluateResult run_evaluate(const StudyProblem& problem, bool gradients) {
     demand.quantities = quantities_to_report(problem.design);
     if (gradients) { demand.gradients = gradient_keys(problem.design); }
     demand.error_estimates = true;
+    demand.cancelled = cancelled;
     result.evaluation = evaluator.evaluate(demand);
     result.ending = ending_of(result.evaluation.status);
+    if (was_cancelled(result.evaluation, cancelled)) { result.ending = Ending::interrupted; }
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
 }

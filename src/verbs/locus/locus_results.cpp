@@ -1,26 +1,34 @@
-#include "verbs/branch/branch_results.hpp"
+#include "verbs/locus/locus_results.hpp"
 
 #include "design/scene.hpp"
 #include "model/number_text.hpp"
 #include "results/csv_table.hpp"
-
-#include <nlohmann/json.hpp>
+#include "results/json.hpp"
+#include "verbs/frequencies.hpp"
 
 namespace percuss::verbs {
 
+using problem::ProblemFile;
+using problem::text_of;
+using problem::units_of;
+using results::Block;
+using results::Column;
+using results::csv_text;
+using results::Json;
+using results::Presentation;
+
 namespace {
 
-using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using branch::LocusPoint;
 using design::Quantity;
 
-model::Scales scales_of(const ProblemFile& problem, const verbs::LocusResult& result, double value) {
-    model::Specification spec = problem.study.design.actuator;
+model::Scales scales_of(const ProblemFile& problem, const LocusResult& result, double value) {
+    model::Specification spec = problem.design.actuator;
     spec.set(result.along, value);
     return model::scale(spec).scales;
 }
 
-std::string frequency_text(const ProblemFile& problem, const verbs::LocusResult& result, double omega, double value) {
+std::string frequency_text(const ProblemFile& problem, const LocusResult& result, double omega, double value) {
     const std::string text = model::number_text(omega, 12);
     if (units_of(problem) != "si") { return text; }
     const double hertz = design::drive_frequency(omega, scales_of(problem, result, value));
@@ -29,7 +37,7 @@ std::string frequency_text(const ProblemFile& problem, const verbs::LocusResult&
 
 }  // namespace
 
-std::string locus_document(const ProblemFile& problem, const verbs::LocusResult& result) {
+std::string locus_document(const ProblemFile& problem, const LocusResult& result) {
     Json out = {{"schema", "percuss/locus/1"}, {"units", units_of(problem)}};
     out["reason"] = result.reason;
     out["kind"] = boundary::to_string(result.kind);
@@ -44,22 +52,26 @@ std::string locus_document(const ProblemFile& problem, const verbs::LocusResult&
         const branch::Locus& curve = result.curves[c];
         for (const LocusPoint& p : curve.points) {
             const model::Scales scales = scales_of(problem, result, p.value);
-            out["points"].push_back({{"curve", c},
-                                     {"omega", p.omega},
-                                     {"drive_frequency", design::drive_frequency(p.omega, scales)},
-                                     {"value", p.value},
-                                     {"peak_force", scales.force * p.peak_force}});
+            Json point = {{"curve", c}};
+            add_omega(problem, p.omega, scales.time, point);
+            point["drive_frequency"] = design::drive_frequency(p.omega, scales);
+            point["value"] = p.value;
+            point["peak_force"] = scales.force * p.peak_force;
+            out["points"].push_back(std::move(point));
         }
         for (const branch::LocusTurn& turn : curve.turns) {
-            out[turn.cusp ? "cusps" : "turns"].push_back({{"curve", c}, {"omega", turn.omega}, {"value", turn.value}});
+            Json point = {{"curve", c}};
+            add_omega(problem, turn.omega, scales_of(problem, result, turn.value).time, point);
+            point["value"] = turn.value;
+            out[turn.cusp ? "cusps" : "turns"].push_back(std::move(point));
         }
         out["curves"].push_back({{"curve", c}, {"end", branch::to_string(curve.end)}, {"reason", curve.end_reason}});
     }
     out["cost"] = {{"seconds", result.seconds}, {"periods", result.periods}, {"orbit_solves", result.solves}};
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return results::printed(out);
 }
 
-Presentation present_locus(const ProblemFile& problem, const verbs::LocusResult& result) {
+Presentation present_locus(const ProblemFile& problem, const LocusResult& result) {
     Presentation out;
     const std::string key(model::key_info(result.along).name);
     out.title = problem.name + ": " + std::string(boundary::to_string(result.kind)) + " along " + key;
@@ -71,7 +83,7 @@ Presentation present_locus(const ProblemFile& problem, const verbs::LocusResult&
         const branch::Locus& curve = result.curves[c];
         for (const LocusPoint& p : curve.points) {
             const double force = scales_of(problem, result, p.value).force * p.peak_force;
-            points.rows.push_back({std::to_string(c), text_of(result.along, p.value),
+            points.rows.push_back({std::to_string(c), problem::text_of(result.along, p.value),
                                    frequency_text(problem, result, p.omega, p.value),
                                    text_of(problem, Quantity::peak_force, force)});
         }
@@ -89,15 +101,14 @@ Presentation present_locus(const ProblemFile& problem, const verbs::LocusResult&
     return out;
 }
 
-std::string locus_csv(const ProblemFile& problem, const verbs::LocusResult& result) {
+std::string locus_csv(const ProblemFile& problem, const LocusResult& result) {
     const bool si = units_of(problem) == "si";
     const model::KeyInfo& info = model::key_info(result.along);
-    const std::vector<results::Column> columns = {
-        {"curve", ""},
-        {std::string(info.name), info.unit == "1" ? "" : std::string(info.unit)},
-        {"omega", "rad per Gamma"},
-        {"drive_frequency", si ? "Hz" : ""},
-        {"peak_force", si ? "N" : ""}};
+    const std::vector<Column> columns = {{"curve", ""},
+                                         {std::string(info.name), info.unit == "1" ? "" : std::string(info.unit)},
+                                         {"omega", "rad per Gamma"},
+                                         {"drive_frequency", si ? "Hz" : ""},
+                                         {"peak_force", si ? "N" : ""}};
     std::vector<std::vector<std::string>> rows;
     for (std::size_t c = 0; c < result.curves.size(); ++c) {
         for (const LocusPoint& p : result.curves[c].points) {
@@ -107,7 +118,7 @@ std::string locus_csv(const ProblemFile& problem, const verbs::LocusResult& resu
                             model::exact_text(scales.force * p.peak_force)});
         }
     }
-    return results::csv_text(columns, rows);
+    return csv_text(columns, rows);
 }
 
 }  // namespace percuss::verbs

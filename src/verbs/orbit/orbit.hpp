@@ -17,6 +17,7 @@ struct OrbitResult {
     double seconds = 0.0;
 };
 /// Throws std::invalid_argument when no drive frequency is given.
-OrbitResult run_orbit(const StudyProblem& problem, const OrbitOptions& study);
+OrbitResult run_orbit(const StudyProblem& problem, const OrbitOptions& study,
+                      const numerics::CancelRequest& cancelled = {});
 
 }  // namespace percuss::verbs

@@ -1,33 +1,28 @@
 #include "verbs/simulate/simulate_results.hpp"
 
 #include "model/number_text.hpp"
-#include "verbs/problem_sections.hpp"
+#include "results/csv_table.hpp"
+#include "results/json.hpp"
+#include "verbs/frequencies.hpp"
+#include "verbs/simulate/kick.hpp"
 
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 namespace percuss::verbs {
+
+using problem::ProblemFile;
+using problem::units_of;
+using results::Block;
+using results::Json;
+using results::number;
+using results::omega_digits;
+using results::Presentation;
+using results::quantity_text;
+using results::sentence;
 
 namespace {
 
-using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using design::Quantity;
-using verbs::Ending;
-using verbs::Kick;
-using verbs::Motion;
-using verbs::SimulationStart;
-
-constexpr int omega_digits = 12;
-
-std::string_view status_of(Ending ending) {
-    switch (ending) {
-        case Ending::verified: return "done";
-        case Ending::infeasible: return "no-impact";
-        case Ending::some_failed: return "failed";
-        default: return "stopped";
-    }
-}
 
 std::string_view start_of(SimulationStart start) {
     switch (start) {
@@ -38,11 +33,13 @@ std::string_view start_of(SimulationStart start) {
     return "unknown";
 }
 
-model::Family family_of(const ProblemFile& problem) { return problem.study.design.actuator.family; }
+const SimulateOptions& options_of(const ProblemFile& problem) { return problem.get<SimulateOptions>(); }
+
+model::Family family_of(const ProblemFile& problem) { return problem.design.actuator.family; }
 
 Json kick_of(const ProblemFile& problem) {
-    if (!problem.simulate.kick) { return nullptr; }
-    const Kick& kick = *problem.simulate.kick;
+    if (!options_of(problem).kick) { return nullptr; }
+    const Kick& kick = *options_of(problem).kick;
     Json out = {{"text", kick_text(kick, family_of(problem))}};
     if (kick.kind == Kick::Kind::velocity) {
         out["kind"] = "velocity";
@@ -74,30 +71,18 @@ Json motion_of(const std::optional<Motion>& motion) {
             {"state", motion->state}};
 }
 
-Block sentence(std::string words) {
-    Block block;
-    block.sentence = std::move(words);
-    return block;
-}
-
-std::string number(double value, int digits = 6) { return std::isnan(value) ? "-" : model::number_text(value, digits); }
-
-std::string quantity_text(const ProblemFile& problem, Quantity quantity, double value) {
-    return std::isnan(value) ? "-" : text_of(problem, quantity, value);
-}
-
-std::string outcome_sentence(verbs::KickOutcome outcome) {
+std::string outcome_sentence(KickOutcome outcome) {
     switch (outcome) {
-        case verbs::KickOutcome::recovered: return "the device recovered: it settles on the motion it was on";
-        case verbs::KickOutcome::fell: return "the device fell: it settles on a weaker motion";
-        case verbs::KickOutcome::rose: return "the device rose: it settles on a stronger motion";
-        case verbs::KickOutcome::undecided: return "undecided: before or after the kick no motion settles";
-        case verbs::KickOutcome::none: break;
+        case KickOutcome::recovered: return "the device recovered: it settles on the motion it was on";
+        case KickOutcome::fell: return "the device fell: it settles on a weaker motion";
+        case KickOutcome::rose: return "the device rose: it settles on a stronger motion";
+        case KickOutcome::undecided: return "undecided: before or after the kick no motion settles";
+        case KickOutcome::none: break;
     }
     return "";
 }
 
-Block motions_block(const ProblemFile& problem, const verbs::SimulateResult& result) {
+Block motions_block(const ProblemFile& problem, const SimulateResult& result) {
     Block block{"Settled motion", "", {"property"}, {}};
     std::vector<const Motion*> motions;
     if (result.before) {
@@ -124,17 +109,17 @@ Block motions_block(const ProblemFile& problem, const verbs::SimulateResult& res
     return block;
 }
 
-Block series_block(const ProblemFile& problem, const verbs::SimulateResult& result) {
+Block series_block(const ProblemFile& problem, const SimulateResult& result) {
     const design::OperatingPoint& point = result.operating_point;
     Block block{"Time series", "", {"property", "value"}, {}};
     block.rows.push_back({"drive_frequency", quantity_text(problem, Quantity::drive_frequency, point.drive_frequency)});
     block.rows.push_back({"omega (nondimensional)", number(point.omega, omega_digits)});
-    block.rows.push_back({"start", std::string(start_of(problem.simulate.from))});
+    block.rows.push_back({"start", std::string(start_of(options_of(problem).from))});
     block.rows.push_back({"drive cycles", number(result.cycles)});
     block.rows.push_back({"contacts", std::to_string(result.contacts)});
     block.rows.push_back({"peak_force", quantity_text(problem, Quantity::peak_force, result.peak_force)});
-    if (problem.simulate.kick) {
-        block.rows.push_back({"kick", kick_text(*problem.simulate.kick, family_of(problem))});
+    if (options_of(problem).kick) {
+        block.rows.push_back({"kick", kick_text(*options_of(problem).kick, family_of(problem))});
     }
     if (!std::isnan(result.change_before)) {
         block.rows.push_back({"strobed change when the kick came, relative", number(result.change_before, 2)});
@@ -144,19 +129,24 @@ Block series_block(const ProblemFile& problem, const verbs::SimulateResult& resu
 
 }  // namespace
 
-std::string simulate_document(const ProblemFile& problem, const verbs::SimulateResult& result) {
+std::string_view status_of(const SimulateResult& result) {
+    switch (result.ending) {
+        case Ending::verified: return "done";
+        case Ending::infeasible: return "no-impact";
+        case Ending::some_failed: return "failed";
+        default: return "stopped";
+    }
+}
+
+std::string simulate_document(const ProblemFile& problem, const SimulateResult& result) {
     const design::OperatingPoint& point = result.operating_point;
     Json out = {{"schema", "percuss/simulate/1"}, {"units", units_of(problem)}};
-    out["status"] = status_of(result.ending);
+    out["status"] = status_of(result);
     out["reason"] = result.reason;
-    out["operating_point"] = {{"drive_frequency", point.drive_frequency},
-                              {"omega", point.omega},
-                              {"edge_kind", design::to_string(point.edge_kind)},
-                              {"edge_omega", point.edge_omega},
-                              {"margin", point.margin}};
-    out["start"] = {{"from", start_of(problem.simulate.from)}, {"state", result.start}};
+    out["operating_point"] = operating_point_of(problem, point, PointMembers::without_fold);
+    out["start"] = {{"from", start_of(options_of(problem).from)}, {"state", result.start}};
     out["cycles"] = result.cycles;
-    out["samples"] = problem.simulate.samples;
+    out["samples"] = options_of(problem).samples;
     out["end_state"] = result.end_state;
     out["contacts"] = result.contacts;
     out["peak_force"] = result.peak_force;
@@ -164,19 +154,18 @@ std::string simulate_document(const ProblemFile& problem, const verbs::SimulateR
     out["before"] = motion_of(result.before);
     if (result.before) { out["before"]["change_at_kick"] = result.change_before; }
     out["after"] = motion_of(result.after);
-    out["outcome"] = verbs::to_string(result.outcome);
+    out["outcome"] = to_string(result.outcome);
     out["cost"] = {{"seconds", result.seconds}, {"periods", result.periods}};
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return results::printed(out);
 }
 
-Presentation present_simulation(const ProblemFile& problem, const verbs::SimulateResult& result) {
+Presentation present_simulation(const ProblemFile& problem, const SimulateResult& result) {
     Presentation out;
     out.title = problem.name + ": time series";
-    out.blocks.push_back(sentence("status: " + std::string(status_of(result.ending)) +
-                                  (result.reason.empty() ? "" : " (" + result.reason + ")")));
+    out.blocks.push_back(results::status_sentence(status_of(result), result.reason));
     if (!std::isnan(result.operating_point.omega)) { out.blocks.push_back(series_block(problem, result)); }
     if (result.after) { out.blocks.push_back(motions_block(problem, result)); }
-    if (result.outcome != verbs::KickOutcome::none) {
+    if (result.outcome != KickOutcome::none) {
         out.blocks.push_back(sentence("outcome: " + outcome_sentence(result.outcome)));
     }
     return out;

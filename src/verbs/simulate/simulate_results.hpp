@@ -2,11 +2,12 @@
 /// \file
 /// Results of verb `simulate`.
 
-#include "verbs/presentation.hpp"
-#include "verbs/problem_file.hpp"
+#include "problem/problem_file.hpp"
+#include "results/presentation.hpp"
 #include "verbs/simulate/simulate.hpp"
 
 #include <string>
+#include <string_view>
 
 namespace percuss::verbs {
 
@@ -16,8 +17,11 @@ namespace percuss::verbs {
 /// or "share" and "cycles"} or null,"before":MOTION or null,"after":MOTION or null,"outcome":"none|recovered|fell|rose|
 /// undecided","cost"}; MOTION: {"settled","period","contacts","cycles","strobed_change","remaining_error","polished",
 /// "max_multiplier","amplitude","x_max","x_min","peak_force","state"}, before also "change_at_kick".
-std::string simulate_document(const ProblemFile& problem, const verbs::SimulateResult& result);
+std::string simulate_document(const problem::ProblemFile& problem, const SimulateResult& result);
 
-Presentation present_simulation(const ProblemFile& problem, const verbs::SimulateResult& result);
+results::Presentation present_simulation(const problem::ProblemFile& problem, const SimulateResult& result);
+
+/// The word for how it ended: "status" of the document.
+std::string_view status_of(const SimulateResult& result);
 
 }  // namespace percuss::verbs

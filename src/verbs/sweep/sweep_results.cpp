@@ -1,32 +1,39 @@
 #include "verbs/sweep/sweep_results.hpp"
 
 #include "model/number_text.hpp"
+#include "results/csv_table.hpp"
+#include "results/json.hpp"
+#include "verbs/frequencies.hpp"
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 namespace percuss::verbs {
+
+using problem::ProblemFile;
+using problem::text_of;
+using problem::units_of;
+using results::Block;
+using results::Json;
+using results::Presentation;
+using results::sentence;
 
 namespace {
 
-using Json = nlohmann::ordered_json;  // prints NaN as null and numbers so that they read back exactly
 using design::Quantity;
-using verbs::Ending;
-using verbs::SweepDirection;
-using verbs::SweepJump;
-using verbs::SweepMode;
-using verbs::SweepPoint;
 
-std::string_view status_of(const verbs::SweepResult& result) {
-    switch (result.ending) {
-        case Ending::verified: return "done";
-        case Ending::some_failed: return "failed";
-        default: return "stopped";
-    }
+const SweepOptions& options_of(const ProblemFile& problem) { return problem.get<SweepOptions>(); }
+
+/// The unit of time [s]: the whole sweep has one.
+double time_of(const ProblemFile& problem) { return model::scale(problem.design.actuator).scales.time; }
+
+Json frequency_of(const ProblemFile& problem, double omega, double drive_frequency) {
+    Json out;
+    add_omega(problem, omega, time_of(problem), out);
+    out["drive_frequency"] = drive_frequency;
+    return out;
 }
 
-bool is_chirp(const ProblemFile& problem) { return problem.sweep.mode == SweepMode::chirp; }
+bool is_chirp(const ProblemFile& problem) { return options_of(problem).mode == SweepMode::chirp; }
 
 std::string_view mode_of(const ProblemFile& problem) { return is_chirp(problem) ? "chirp" : "steps"; }
 
@@ -41,8 +48,9 @@ std::vector<std::string> changes_of(const SweepJump& jump) {
     return changes;
 }
 
-Json point_of(const SweepPoint& point, bool chirp) {
-    Json out = {{"omega", point.omega}, {"drive_frequency", point.drive_frequency}};
+Json point_of(const ProblemFile& problem, const SweepPoint& point) {
+    const bool chirp = is_chirp(problem);
+    Json out = frequency_of(problem, point.omega, point.drive_frequency);
     if (!chirp) {
         out["cycles"] = point.cycles;
         out["settled"] = point.settled;
@@ -59,29 +67,34 @@ Json point_of(const SweepPoint& point, bool chirp) {
     return out;
 }
 
-Json jump_of(const SweepDirection& direction, const SweepJump& jump) {
+Json jump_of(const ProblemFile& problem, const SweepDirection& direction, const SweepJump& jump) {
     const SweepPoint& before = direction.points[jump.before];
     const SweepPoint& after = direction.points[jump.after];
-    return {{"between", {before.omega, after.omega}},
-            {"drive_frequencies", {before.drive_frequency, after.drive_frequency}},
+    const double time = time_of(problem);
+    return {{"between",
+             Json::array({in_user_units(problem, before.omega, time), in_user_units(problem, after.omega, time)})},
+            {"drive_frequencies", Json::array({before.drive_frequency, after.drive_frequency})},
             {"changes", changes_of(jump)},
             {"discontinuous", jump.discontinuous()}};
 }
 
-Json direction_document(const SweepDirection& direction, bool chirp) {
+Json direction_document(const ProblemFile& problem, const SweepDirection& direction) {
     Json out = {{"direction", direction_of(direction)},
                 {"trouble", direction.trouble},
                 {"points", Json::array()},
                 {"jumps", Json::array()},
                 {"periods", direction.periods}};
-    for (const SweepPoint& point : direction.points) { out["points"].push_back(point_of(point, chirp)); }
-    for (const SweepJump& jump : direction.jumps) { out["jumps"].push_back(jump_of(direction, jump)); }
+    for (const SweepPoint& point : direction.points) { out["points"].push_back(point_of(problem, point)); }
+    for (const SweepJump& jump : direction.jumps) { out["jumps"].push_back(jump_of(problem, direction, jump)); }
     return out;
 }
 
-Json comparison_of(const verbs::SweepComparison& comparison) {
+Json comparison_of(const ProblemFile& problem, const SweepComparison& comparison) {
+    const double time = time_of(problem);
     Json ranges = Json::array();
-    for (const auto& [from, to] : comparison.ranges) { ranges.push_back({from, to}); }
+    for (const auto& [from, to] : comparison.ranges) {
+        ranges.push_back(Json::array({in_user_units(problem, from, time), in_user_units(problem, to, time)}));
+    }
     return {{"coincide", comparison.coincide()}, {"compared", comparison.compared},
             {"different", comparison.different}, {"unsettled", comparison.unsettled},
             {"tolerance", comparison.tolerance}, {"largest_difference", comparison.largest},
@@ -99,12 +112,6 @@ std::string frequency_text(const ProblemFile& problem, const SweepPoint& point) 
     return frequency_text(problem, point.omega, point.drive_frequency);
 }
 
-Block sentence(std::string words) {
-    Block block;
-    block.sentence = std::move(words);
-    return block;
-}
-
 /// "3 contacts in 2 cycles", "irregular".
 std::string motion_text(const SweepPoint& point, bool chirp) {
     const std::string contacts = std::to_string(point.contacts) + (point.contacts == 1 ? " contact" : " contacts");
@@ -113,7 +120,7 @@ std::string motion_text(const SweepPoint& point, bool chirp) {
     return "period " + std::to_string(point.period) + ", " + contacts;
 }
 
-Block jumps_block(const ProblemFile& problem, const verbs::SweepResult& result) {
+Block jumps_block(const ProblemFile& problem, const SweepResult& result) {
     Block block{is_chirp(problem) ? "Where the chirp begins or ceases to strike" : "Changes of motion",
                 "",
                 {"direction", "from omega", "to omega", "motion before", "motion after", "peak force before",
@@ -137,7 +144,7 @@ Block jumps_block(const ProblemFile& problem, const verbs::SweepResult& result) 
     return block;
 }
 
-Block directions_block(const ProblemFile& problem, const verbs::SweepResult& result) {
+Block directions_block(const ProblemFile& problem, const SweepResult& result) {
     Block block{"Directions",
                 "",
                 {"direction", "points", "settled", "largest peak force", "at omega", "drive cycles integrated"},
@@ -157,7 +164,7 @@ Block directions_block(const ProblemFile& problem, const verbs::SweepResult& res
     return block;
 }
 
-std::string comparison_sentence(const verbs::SweepComparison& comparison) {
+std::string comparison_sentence(const SweepComparison& comparison) {
     std::string text;
     if (comparison.compared == 0) {
         text = "The two directions have no settled motion in common to compare";
@@ -178,7 +185,7 @@ std::string comparison_sentence(const verbs::SweepComparison& comparison) {
     return text + ".";
 }
 
-std::string settled_sentence(const verbs::SweepOptions& study) {
+std::string settled_sentence(const SweepOptions& study) {
     return "Settled means: the strobed state repeats after at most " + std::to_string(study.longest_period) +
            " drive cycles to " + model::number_text(study.tolerance) +
            " relative to 1 + |state|, it is no further than that from a stable orbit (one Newton step, not taken), and "
@@ -188,14 +195,22 @@ std::string settled_sentence(const verbs::SweepOptions& study) {
 
 }  // namespace
 
-std::string sweep_document(const ProblemFile& problem, const verbs::SweepResult& result) {
-    const verbs::SweepOptions& study = problem.sweep;
+std::string_view status_of(const SweepResult& result) {
+    switch (result.ending) {
+        case Ending::verified: return "done";
+        case Ending::some_failed: return "failed";
+        default: return "stopped";
+    }
+}
+
+std::string sweep_document(const ProblemFile& problem, const SweepResult& result) {
+    const SweepOptions& study = options_of(problem);
     Json out = {{"schema", "percuss/sweep/1"}, {"units", units_of(problem)}};
     out["status"] = status_of(result);
     out["reason"] = result.reason;
     out["mode"] = mode_of(problem);
-    out["from"] = {{"omega", result.from_omega}, {"drive_frequency", result.from}};
-    out["to"] = {{"omega", result.to_omega}, {"drive_frequency", result.to}};
+    out["from"] = frequency_of(problem, result.from_omega, result.from);
+    out["to"] = frequency_of(problem, result.to_omega, result.to);
     if (is_chirp(problem)) {
         out["chirp_cycles"] = study.chirp_cycles;
     } else {
@@ -207,23 +222,22 @@ std::string sweep_document(const ProblemFile& problem, const verbs::SweepResult&
     }
     out["directions"] = Json::array();
     for (const SweepDirection& direction : result.directions) {
-        out["directions"].push_back(direction_document(direction, is_chirp(problem)));
+        out["directions"].push_back(direction_document(problem, direction));
     }
-    if (!is_chirp(problem)) { out["comparison"] = comparison_of(result.comparison); }
+    if (!is_chirp(problem)) { out["comparison"] = comparison_of(problem, result.comparison); }
     double periods = 0.0;
     for (const SweepDirection& direction : result.directions) { periods += direction.periods; }
     out["cost"] = {{"seconds", result.seconds}, {"periods", periods}};
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return results::printed(out);
 }
 
-Presentation present_sweep(const ProblemFile& problem, const verbs::SweepResult& result) {
+Presentation present_sweep(const ProblemFile& problem, const SweepResult& result) {
     Presentation out;
     out.title = problem.name + ": frequency sweep";
-    out.blocks.push_back(sentence("status: " + std::string(status_of(result)) +
-                                  (result.reason.empty() ? "" : " (" + result.reason + ")")));
-    const std::string way = is_chirp(problem)
-                              ? "chirp of " + std::to_string(problem.sweep.chirp_cycles) + " drive cycles each way"
-                              : std::to_string(problem.sweep.steps) + " steps each way";
+    out.blocks.push_back(results::status_sentence(status_of(result), result.reason));
+    const std::string way =
+        is_chirp(problem) ? "chirp of " + std::to_string(options_of(problem).chirp_cycles) + " drive cycles each way"
+                          : std::to_string(options_of(problem).steps) + " steps each way";
     out.blocks.push_back(sentence("omega " + frequency_text(problem, result.from_omega, result.from) + " to " +
                                   frequency_text(problem, result.to_omega, result.to) + ", " + way));
     out.blocks.push_back(directions_block(problem, result));
@@ -232,7 +246,7 @@ Presentation present_sweep(const ProblemFile& problem, const verbs::SweepResult&
     out.blocks.push_back(std::move(jumps));
     if (!is_chirp(problem)) {
         out.blocks.push_back(sentence(comparison_sentence(result.comparison)));
-        out.blocks.push_back(sentence(settled_sentence(problem.sweep)));
+        out.blocks.push_back(sentence(settled_sentence(options_of(problem))));
     }
     return out;
 }

@@ -2,11 +2,12 @@
 /// \file
 /// Results of verb `sweep`.
 
-#include "verbs/presentation.hpp"
-#include "verbs/problem_file.hpp"
+#include "problem/problem_file.hpp"
+#include "results/presentation.hpp"
 #include "verbs/sweep/sweep.hpp"
 
 #include <string>
+#include <string_view>
 
 namespace percuss::verbs {
 
@@ -17,8 +18,11 @@ namespace percuss::verbs {
 /// "drive_frequencies":[f, f],"changes":["period","contacts","amplitude","peak_force"],"discontinuous"}]}],
 /// "comparison":{"coincide","compared","different","unsettled","tolerance","largest_difference","ranges":[[omega,
 /// omega]]} (steps),"cost"}. Frequencies in the order in which they were passed.
-std::string sweep_document(const ProblemFile& problem, const verbs::SweepResult& result);
+std::string sweep_document(const problem::ProblemFile& problem, const SweepResult& result);
 
-Presentation present_sweep(const ProblemFile& problem, const verbs::SweepResult& result);
+results::Presentation present_sweep(const problem::ProblemFile& problem, const SweepResult& result);
+
+/// The word for how it ended: "status" of the document.
+std::string_view status_of(const SweepResult& result);
 
 }  // namespace percuss::verbs
