@@ -5,6 +5,8 @@
 #include "branch/switching.hpp"
 #include "branch/trace.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "orbit/polish.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
@@ -155,7 +157,7 @@ TEST_CASE("the hysteresis map of the defaults: one branch through both grazing p
 }
 
 TEST_CASE("the same map the other way round, and without the stop") {
-    for (const auto law : {model::StopLaw::kelvin_voigt, model::StopLaw::no_tension}) {
+    for (const auto law : {model::ContactLaw::kelvin_voigt, model::ContactLaw::no_tension}) {
         study::StudyProblem problem = paper();
         problem.design.actuator.law = law;
         const auto down = map_of(problem, 4.0, 1.2);
@@ -175,7 +177,7 @@ TEST_CASE("the same map the other way round, and without the stop") {
         CHECK(a.boundaries[0].point.omega == relative(reference::grazing_upper, 6e-12));
     }
     study::StudyProblem free = paper();
-    free.design.actuator.law = model::StopLaw::none;
+    free.design.actuator.law = model::ContactLaw::none;
     const auto alone = map_of(free, 4.0, 1.2);
     CHECK(alone.ending == study::Ending::verified);
     CHECK(alone.branches.at(0).boundaries.empty());
@@ -274,16 +276,16 @@ TEST_CASE("a stop that cannot pull grazes where the free motion does") {
     // Designs in which the release without force has a second root, at a negative duration.
     study::StudyProblem problem = paper();
     model::Specification& spec = problem.design.actuator;
-    spec.set(Key::nd_stiffness, 70220.0);
-    spec.set(Key::nd_gap, 0.0319);
-    spec.set(Key::nd_voltage, 0.2246);
-    spec.set(Key::nd_layers, 6.0);
-    spec.set(Key::nd_delta_a, 0.02335);
-    spec.set(Key::nd_delta_b, 5.248);
-    spec.set(Key::nd_damping, 19.65);
+    spec.set(percuss::model::membrane::key::nd_stiffness, 70220.0);
+    spec.set(percuss::model::membrane::key::nd_gap, 0.0319);
+    spec.set(percuss::model::membrane::key::nd_voltage, 0.2246);
+    spec.set(percuss::model::membrane::key::nd_layers, 6.0);
+    spec.set(percuss::model::membrane::key::nd_delta_a, 0.02335);
+    spec.set(percuss::model::membrane::key::nd_delta_b, 5.248);
+    spec.set(percuss::model::membrane::key::nd_damping, 19.65);
     std::vector<double> lower;
     std::vector<double> upper;
-    for (const auto law : {model::StopLaw::kelvin_voigt, model::StopLaw::no_tension}) {
+    for (const auto law : {model::ContactLaw::kelvin_voigt, model::ContactLaw::no_tension}) {
         spec.law = law;
         const auto result = study::run_branch(problem, {}, {}, {});
         CHECK(result.ending == study::Ending::verified);
@@ -369,9 +371,9 @@ TEST_CASE("twice the period leaves at the flip and comes back to the branch it l
 
 TEST_CASE("along a design variable: an S-curve in the voltage, and orbits solved one by one") {
     study::StudyProblem problem = paper();
-    problem.design.actuator.set(Key::nd_omega, 1.9);
+    problem.design.actuator.set(percuss::model::membrane::key::nd_omega, 1.9);
     study::BranchStudy study;
-    study.along = Key::nd_voltage;
+    study.along = percuss::model::membrane::key::nd_voltage;
     study.from = 0.1;
     study.to = 0.6;
     const auto result = map_of(problem, study);
@@ -387,12 +389,13 @@ TEST_CASE("along a design variable: an S-curve in the voltage, and orbits solved
     for (const BoundaryPoint& found : s.boundaries) {
         CAPTURE(boundary::to_string(found.kind));
         study::StudyProblem there = paper();
-        there.design.actuator.set(Key::nd_voltage, found.point.parameter);
+        there.design.actuator.set(percuss::model::membrane::key::nd_voltage, found.point.parameter);
         const auto across = map_of(there, 3.0, 1.7);
         CHECK(nearest(across.branches.at(0), found.kind, 1.9).point.omega == relative(1.9, 1e-10));
     }
 
-    for (const Key key : {Key::nd_gap, Key::nd_stiffness, Key::nd_damping, Key::nd_delta_b}) {
+    for (const Key key : {percuss::model::membrane::key::nd_gap, percuss::model::membrane::key::nd_stiffness,
+                          percuss::model::membrane::key::nd_damping, percuss::model::membrane::key::nd_delta_b}) {
         CAPTURE(model::key_info(key).name);
         study::BranchStudy other;
         other.along = key;
@@ -435,10 +438,10 @@ TEST_CASE("what ends a branch, and what cannot be begun") {
     empty.to = 2.0;
     CHECK_THROWS_AS(map_of(paper(), empty), std::invalid_argument);
     study::BranchStudy no_range;
-    no_range.along = Key::nd_gap;
+    no_range.along = percuss::model::membrane::key::nd_gap;
     CHECK_THROWS_AS(map_of(paper(), no_range), std::invalid_argument);
     study::BranchStudy foreign;
-    foreign.along = Key::sm_force;
+    foreign.along = percuss::model::spring::key::force;
     foreign.from = 0.1;
     foreign.to = 0.2;
     CHECK_THROWS_AS(map_of(paper(), foreign), std::invalid_argument);

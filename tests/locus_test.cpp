@@ -3,6 +3,8 @@
 
 #include "design/families.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
 #include "study/branch.hpp"
@@ -64,7 +66,8 @@ double on_main_branch(study::StudyProblem problem, Kind kind, Key key, double va
 
 TEST_CASE("the published fold curve of the soft stop") {
     const auto problem = test::shipped_problem("soft-impact");
-    const auto result = follow(problem, Kind::fold, Key::sm_force, test::soft_impact::parameters[3], 0.5, 35);
+    const auto result =
+        follow(problem, Kind::fold, percuss::model::spring::key::force, test::soft_impact::parameters[3], 0.5, 35);
     CHECK(result.ending == study::Ending::verified);
     REQUIRE(result.curves.size() == 2);  // the fold beside grazing, and the one far up
     const Locus& upper = result.curves[1];
@@ -79,14 +82,14 @@ TEST_CASE("the published fold curve of the soft stop") {
         CHECK(curve.points.back().value == relative(0.5, 1e-12));
     }
     // The same in the other direction.
-    const auto back = follow(problem, Kind::fold, Key::sm_force, 0.5, 0.16, 17);
+    const auto back = follow(problem, Kind::fold, percuss::model::spring::key::force, 0.5, 0.16, 17);
     const Locus& again = back.curves.back();
     CHECK(std::abs(at_value(again, 0.2, 1.6).omega - 1.599768196) < 6e-10);
 }
 
 TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from either side") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
-    const auto down = follow(problem, Kind::fold, Key::nd_voltage, 0.5, 0.15);
+    const auto down = follow(problem, Kind::fold, percuss::model::membrane::key::nd_voltage, 0.5, 0.15);
     CHECK(down.ending == study::Ending::verified);
     REQUIRE(down.curves.size() == 1);  // the second fold is the end of the first one's curve
     const Locus& curve = down.curves[0];
@@ -109,17 +112,19 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
     for (const double value : {0.3, 0.22}) {
         CAPTURE(value);
         const double omega = at_value(curve, value, 2.5).omega;
-        CHECK(omega == relative(on_main_branch(problem, Kind::fold, Key::nd_voltage, value, omega), 1e-10));
+        CHECK(omega ==
+              relative(on_main_branch(problem, Kind::fold, percuss::model::membrane::key::nd_voltage, value, omega),
+                       1e-10));
     }
 
-    const auto up = follow(problem, Kind::fold, Key::nd_voltage, 0.201, 0.15);
+    const auto up = follow(problem, Kind::fold, percuss::model::membrane::key::nd_voltage, 0.201, 0.15);
     REQUIRE(up.curves.size() == 1);
     REQUIRE(up.curves[0].turns.size() == 1);
     CHECK(up.curves[0].turns[0].cusp);
     CHECK(up.curves[0].turns[0].value == relative(cusp.value, 1e-10));
     CHECK(up.curves[0].turns[0].omega == relative(cusp.omega, 1e-7));
     // Below the cusp nothing folds.
-    const auto none = follow(problem, Kind::fold, Key::nd_voltage, 0.19, 0.15);
+    const auto none = follow(problem, Kind::fold, percuss::model::membrane::key::nd_voltage, 0.19, 0.15);
     CHECK(none.ending == study::Ending::infeasible);
     CHECK(none.curves.empty());
     CHECK_FALSE(none.reason.empty());
@@ -127,44 +132,51 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
 
 TEST_CASE("grazing and flip curves lie where the branches have them") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
-    const auto grazing = follow(problem, Kind::grazing, Key::nd_gap, 0.1, 0.2, 10);
+    const auto grazing = follow(problem, Kind::grazing, percuss::model::membrane::key::nd_gap, 0.1, 0.2, 10);
     CHECK(grazing.ending == study::Ending::verified);
     REQUIRE(!grazing.curves.empty());
     for (const auto& gap : {0.12, 0.15}) {
         const double omega = at_value(grazing.curves[0], gap, 1.9).omega;
-        CHECK(omega == relative(on_main_branch(problem, Kind::grazing, Key::nd_gap, gap, omega), 1e-10));
+        CHECK(
+            omega ==
+            relative(on_main_branch(problem, Kind::grazing, percuss::model::membrane::key::nd_gap, gap, omega), 1e-10));
         CHECK(at_value(grazing.curves[0], gap, 1.9).peak_force == 0.0);
     }
     // Upper and lower grazing meet where the stroke at resonance is the gap: a turn, and no cusp of folds.
     for (const auto& known : test::edge_reference::vs_phi_pp) {
-        const auto voltage = follow(problem, Kind::grazing, Key::nd_voltage, 0.4, known[0], 4);
+        const auto voltage =
+            follow(problem, Kind::grazing, percuss::model::membrane::key::nd_voltage, 0.4, known[0], 4);
         CHECK(std::abs(at_value(voltage.curves.at(0), known[0], known[1]).omega - known[1]) < 1e-6);
     }
-    const auto meeting = follow(problem, Kind::grazing, Key::nd_voltage, 0.4, 0.1, 10);
+    const auto meeting = follow(problem, Kind::grazing, percuss::model::membrane::key::nd_voltage, 0.4, 0.1, 10);
     REQUIRE(meeting.curves.size() == 1);
     REQUIRE(meeting.curves[0].turns.size() == 1);
     CHECK_FALSE(meeting.curves[0].turns[0].cusp);
     CHECK(meeting.curves[0].turns[0].value > 0.19);
     CHECK(meeting.curves[0].turns[0].value < 0.2);
 
-    const auto flip = follow(problem, Kind::flip, Key::nd_stiffness, 2500.0, 5000.0, 10);
+    const auto flip = follow(problem, Kind::flip, percuss::model::membrane::key::nd_stiffness, 2500.0, 5000.0, 10);
     REQUIRE(!flip.curves.empty());
     const double omega = at_value(flip.curves[0], 4000.0, 1.75).omega;
-    CHECK(omega == relative(on_main_branch(problem, Kind::flip, Key::nd_stiffness, 4000.0, omega), 1e-10));
+    CHECK(omega ==
+          relative(on_main_branch(problem, Kind::flip, percuss::model::membrane::key::nd_stiffness, 4000.0, omega),
+                   1e-10));
 }
 
 TEST_CASE("a torus curve") {
     auto problem = test::shipped_problem("wu2022-nondimensional");
     model::Specification& spec = problem.design.actuator;
-    spec.law = model::StopLaw::none;
-    spec.set(Key::nd_voltage, 0.232);
-    spec.set(Key::nd_delta_a, 0.022);
-    spec.set(Key::nd_delta_b, 390.0);
-    const auto torus = follow(problem, Kind::torus, Key::nd_delta_a, 0.022, 0.024, 10);
+    spec.law = model::ContactLaw::none;
+    spec.set(percuss::model::membrane::key::nd_voltage, 0.232);
+    spec.set(percuss::model::membrane::key::nd_delta_a, 0.022);
+    spec.set(percuss::model::membrane::key::nd_delta_b, 390.0);
+    const auto torus = follow(problem, Kind::torus, percuss::model::membrane::key::nd_delta_a, 0.022, 0.024, 10);
     CHECK(torus.ending == study::Ending::verified);
     REQUIRE(!torus.curves.empty());
     const LocusPoint& there = at_value(torus.curves[0], 0.023, 1.79);
-    CHECK(there.omega == relative(on_main_branch(problem, Kind::torus, Key::nd_delta_a, 0.023, there.omega), 1e-9));
+    CHECK(there.omega ==
+          relative(on_main_branch(problem, Kind::torus, percuss::model::membrane::key::nd_delta_a, 0.023, there.omega),
+                   1e-9));
     CHECK(there.angle != 0.0);
 }
 
@@ -174,7 +186,9 @@ TEST_CASE("families move their parameters as their directions say") {
     const auto integrator = test::membranes();
     const flow::System system{integrator.get(), model::scale(spec).parameters, nullptr};
     CHECK(design::frequency_family(system).at(1.7).omega() == 1.7);
-    for (const Key key : {Key::moving_mass, Key::stop_gap, Key::drive_voltage, Key::prestretch, Key::outer_radius}) {
+    for (const Key key :
+         {percuss::model::membrane::key::moving_mass, Key::stop_gap, percuss::model::membrane::key::drive_voltage,
+          percuss::model::membrane::key::prestretch, percuss::model::membrane::key::outer_radius}) {
         CAPTURE(model::key_info(key).name);
         const double value = spec.value(key);
         const flow::Family alone = design::key_family(system, spec, key, value);
@@ -205,9 +219,9 @@ TEST_CASE("families move their parameters as their directions say") {
         check(both, {1.8, 1.1 * value});
         CHECK(both.at(std::vector<double>{1.8, value}).omega() == 1.8);
     }
-    CHECK_THROWS_WITH_AS(design::key_family(system, spec, Key::nd_gap, 1.0), doctest::Contains("nondimensional.g"),
-                         std::invalid_argument);
-    CHECK(design::is_drive_frequency(Key::sm_omega));
+    CHECK_THROWS_WITH_AS(design::key_family(system, spec, percuss::model::membrane::key::nd_gap, 1.0),
+                         doctest::Contains("nondimensional.g"), std::invalid_argument);
+    CHECK(design::is_drive_frequency(percuss::model::spring::key::omega));
     CHECK_FALSE(design::is_drive_frequency(Key::stop_gap));
 }
 
@@ -216,17 +230,17 @@ TEST_CASE("misuse and early ends") {
     const auto run = [&](const study::LocusStudy& study) { return study::run_locus(problem, study, {}, {}); };
     study::LocusStudy study;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("locus.along"), std::invalid_argument);
-    study.along = Key::nd_voltage;
+    study.along = percuss::model::membrane::key::nd_voltage;
     study.from = 0.3;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("locus.to"), std::invalid_argument);
     study.to = 0.3;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("empty"), std::invalid_argument);
-    study.along = Key::nd_omega;
+    study.along = percuss::model::membrane::key::nd_omega;
     study.to = 0.4;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("drive frequency"), std::invalid_argument);
-    study.along = Key::sm_force;
+    study.along = percuss::model::spring::key::force;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("spring-mass.force"), std::invalid_argument);
-    study.along = Key::nd_voltage;
+    study.along = percuss::model::membrane::key::nd_voltage;
     study.max_points = 5;
     const auto few = run(study);
     CHECK(few.ending == study::Ending::budget);

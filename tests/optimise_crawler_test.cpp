@@ -2,6 +2,7 @@
 
 #include "design/evaluate.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
 #include "study/design_nlp.hpp"
@@ -69,7 +70,7 @@ TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
     CHECK(r.ending == study::Ending::verified);
     CHECK(r.best.status == EvaluationStatus::ok);
     CHECK(r.best.value(Quantity::peak_force) > 3.37);
-    CHECK(value_of(r.design, Key::layers) == 3.0);
+    CHECK(value_of(r.design, percuss::model::membrane::key::layers) == 3.0);
     CHECK(r.kkt_residual < 1e-6);
     CHECK(r.objective_error < 1e-9 * r.best.value(Quantity::peak_force));
     REQUIRE(r.per_layers.size() == 4);
@@ -158,7 +159,7 @@ TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions,
 TEST_CASE("a multiplier is what a wider limit gains") {
     study::StudyProblem problem = solved().problem;
     REQUIRE(solved().result.status == "optimal");
-    problem.design.actuator.set(Key::layers, 3.0);
+    problem.design.actuator.set(percuss::model::membrane::key::layers, 3.0);
     std::erase_if(problem.design.variables, [](const design::DesignVariable& v) { return v.integer; });
     const study::LimitReport* active = nullptr;
     std::size_t which = 0;

@@ -2,6 +2,8 @@
 #include "io/problem_error.hpp"
 #include "io/problem_file.hpp"
 #include "io/setting_table.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "scratch_folder.hpp"
 
 #include <doctest/doctest.h>
@@ -74,11 +76,11 @@ TEST_CASE("the shipped actuator is the paper's") {
     const ProblemFile problem = io::read_problem(shipped("wu2022-actuator.ini"), {});
     const model::Specification& spec = problem.study.design.actuator;
     CHECK(problem.name == "wu2022-actuator");
-    CHECK(spec.family == model::Family::dielectric_elastomer_si);
+    CHECK(spec.type == &model::membrane::si);
     CHECK(spec.value(Key::stop_gap) == 0.6e-3);
     CHECK(spec.value(Key::stop_stiffness) == 51.9e3);
-    CHECK(spec.value(Key::drive_voltage) == 3300.0);
-    CHECK(spec.value(Key::layers) == 1.0);
+    CHECK(spec.value(percuss::model::membrane::key::drive_voltage) == 3300.0);
+    CHECK(spec.value(percuss::model::membrane::key::layers) == 1.0);
     CHECK_FALSE(model::has_frequency(spec));
     CHECK(problem.study.design.margin == 0.01);
     CHECK(problem.study.design.variables.empty());
@@ -102,7 +104,7 @@ TEST_CASE("the shipped crawler is the main job") {
     CHECK_FALSE(design.variables[0].logarithmic);
     CHECK(design.variables[1].logarithmic);
     CHECK(design.variables[1].upper == 200e3);
-    CHECK(design.variables[2].key == Key::layers);
+    CHECK(design.variables[2].key == percuss::model::membrane::key::layers);
     CHECK(design.variables[2].integer);
     REQUIRE(design.objectives.size() == 1);
     CHECK(design.objectives[0].maximise);
@@ -125,7 +127,7 @@ TEST_CASE("the shipped oscillators are the published ones") {
     CHECK(soft[model::spring::force] == 0.152380952381);
     CHECK(soft[model::spring::stop_stiffness] == 29.0);
     const ProblemFile duffing = io::read_problem(shipped("duffing.ini"), {});
-    CHECK(duffing.study.design.actuator.law == model::StopLaw::none);
+    CHECK(duffing.study.design.actuator.law == model::ContactLaw::none);
     const auto scaled = model::scale(duffing.study.design.actuator);
     CHECK(scaled.parameters[model::spring::omega] == doctest::Approx(1.2).epsilon(1e-15));
     CHECK(scaled.parameters[model::spring::cubic] == doctest::Approx(0.1 * 0.18 * 0.18).epsilon(1e-15));
@@ -134,14 +136,14 @@ TEST_CASE("the shipped oscillators are the published ones") {
 TEST_CASE("options win over the file") {
     const ProblemFile problem =
         read(nondimensional + "omega = 1.9\n", {option("nondimensional.omega", "2.2"), option("drive.margin", "0")});
-    CHECK(problem.study.design.actuator.value(Key::nd_omega) == 2.2);
+    CHECK(problem.study.design.actuator.value(percuss::model::membrane::key::nd_omega) == 2.2);
     CHECK(problem.study.design.margin == 0.0);
     CHECK_FALSE(model::has_frequency(
         read(nondimensional + "omega = 1.9\n", {option("nondimensional.omega", "edge")}).study.design.actuator));
     // The two ways to give the frequency of an oscillator replace each other.
     const ProblemFile oscillator = read(spring + "[drive]\nfrequency = 50 Hz\n", {option("spring-mass.omega", "300")});
     CHECK_FALSE(oscillator.study.design.actuator.has(Key::drive_frequency));
-    CHECK(oscillator.study.design.actuator.value(Key::sm_omega) == 300.0);
+    CHECK(oscillator.study.design.actuator.value(percuss::model::spring::key::omega) == 300.0);
 }
 
 TEST_CASE("repeatable options replace the whole list") {
@@ -157,8 +159,8 @@ TEST_CASE("repeatable options replace the whole list") {
 
 TEST_CASE("defaults are filled in") {
     const ProblemFile problem = read(nondimensional);
-    CHECK(problem.study.design.actuator.value(Key::nd_layers) == 1.0);
-    CHECK(problem.study.design.actuator.law == model::StopLaw::kelvin_voigt);
+    CHECK(problem.study.design.actuator.value(percuss::model::membrane::key::nd_layers) == 1.0);
+    CHECK(problem.study.design.actuator.law == model::ContactLaw::kelvin_voigt);
     const study::OptimiserOptions defaults;
     CHECK(problem.study.optimiser.method == defaults.method);
     CHECK(problem.orbit.period == 1);
@@ -170,7 +172,7 @@ TEST_CASE("a variable without a value starts in the middle of its range") {
                              "variable = spring-mass.stiffness in 1 .. 100 log\nvariable = stop.gap in 1 mm .. 3 mm\n"
                              "variable = stop.stiffness in 1 .. 4 integer\n";
     const auto& spec = read(text).study.design.actuator;
-    CHECK(spec.value(Key::sm_stiffness) == doctest::Approx(10.0).epsilon(1e-14));
+    CHECK(spec.value(percuss::model::spring::key::stiffness) == doctest::Approx(10.0).epsilon(1e-14));
     CHECK(spec.value(Key::stop_gap) == doctest::Approx(2e-3).epsilon(1e-14));
     CHECK(spec.value(Key::stop_stiffness) == 2.0);
 }
@@ -317,9 +319,7 @@ TEST_CASE("the hash tells problems apart and units and spelling do not matter") 
 }
 
 TEST_CASE("every key has its line in the table") {
-    for (std::size_t i = 0; i < model::key_count; ++i) {
-        CHECK(io::find_setting(model::key_info(static_cast<Key>(i)).name) != nullptr);
-    }
+    for (const Key key : model::all_keys()) { CHECK(io::find_setting(model::key_info(key).name) != nullptr); }
     CHECK(io::find_setting("design.limit")->repeatable);
     CHECK(io::find_setting("stop.gapp") == nullptr);
 }

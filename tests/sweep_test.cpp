@@ -1,4 +1,4 @@
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "memory_table.hpp"
 #include "orbit/frequency_sweep.hpp"
 #include "orbit/polish.hpp"
@@ -22,9 +22,11 @@ namespace {
 /// A shipped problem ready to integrate.
 struct Bench {
     study::StudyProblem problem;
-    design::Scene scene;
+    design::Integrators scene;
     flow::System system;
-    explicit Bench(const std::string& name) : problem(test::shipped_problem(name)), scene(make_scene(problem.design)) {
+    explicit Bench(const std::string& name)
+        : problem(test::shipped_problem(name)),
+          scene(make_integrators(problem.design)) {
         system = {scene.own.get(), model::scale(problem.design.actuator).parameters, nullptr};
     }
     [[nodiscard]] flow::State rest() const { return scene.own->rest_state(system.parameters); }
@@ -204,7 +206,7 @@ TEST_CASE("the paper's sweep jumps at the edges and lies on the exact orbits") {
 
 TEST_CASE("without the stop both directions coincide") {
     study::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
-    problem.design.actuator.law = model::StopLaw::none;
+    problem.design.actuator.law = model::ContactLaw::none;
     const auto result = study::run_sweep(problem, paper_range(60), nullptr, {}, {});
     REQUIRE(result.ending == study::Ending::verified);
     CHECK(result.comparison.coincide());

@@ -1,10 +1,10 @@
 #include "design/evaluate.hpp"
 
 #include "design/band.hpp"
+#include "design/integrators.hpp"
 #include "design/measure.hpp"
 #include "design/operating_point.hpp"
 #include "design/sampled_check.hpp"
-#include "design/scene.hpp"
 #include "design/uniqueness.hpp"
 
 #include <algorithm>
@@ -26,12 +26,12 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 struct Evaluator::Implementation {
     Problem problem;
-    Scene scene;
+    Integrators scene;
 
     explicit Implementation(Problem p) : problem(std::move(p)) {
         model::validate(problem.actuator);
         const auto check = [&](Quantity q) {
-            const std::string_view why = unavailable(q, problem.actuator.family);
+            const std::string_view why = unavailable(q, *problem.actuator.type);
             if (!why.empty()) {
                 throw std::invalid_argument(std::string(quantity_info(q).name) + " " + std::string(why));
             }
@@ -41,7 +41,7 @@ struct Evaluator::Implementation {
         if (!(problem.margin >= 0.0 && problem.margin < 0.5)) {
             throw std::invalid_argument("drive.margin: allowed is 0 % to 50 %");
         }
-        scene = make_scene(problem);
+        scene = make_integrators(problem);
     }
 };
 
@@ -50,7 +50,7 @@ namespace {
 /// One evaluation under way.
 class Run {
 public:
-    Run(const Problem& problem, const Scene& scene, const Specification& actuator, const Demand& demand)
+    Run(const Problem& problem, const Integrators& scene, const Specification& actuator, const Demand& demand)
         : problem_(problem),
           actuator_(actuator),
           demand_(demand),
@@ -79,7 +79,8 @@ public:
         set_given(*given);
         Reached reached;
         if (start) {
-            reached = from_start(from_user(*start, "orbit.start", scaled_.scales, system_.states()), period);
+            reached =
+                from_start(from_user(*start, "orbit.start", *actuator_.type, scaled_.scales, system_.states()), period);
         } else {
             reached = from_rest(period);
             if (reached.orbit.ok()) { reached.orbit = orbit::start_with_longest_flight(system_, reached.orbit); }
@@ -147,7 +148,7 @@ private:
         set_given(omega);
         const Reached reached = from_rest(1);
         accept(reached);
-        const bool has_stop = actuator_.law != model::StopLaw::none;
+        const bool has_stop = model::has_stop(actuator_.law);
         if (has_stop && result_.status == EvaluationStatus::ok && reached.orbit.contacts.empty()) {
             result_.status = EvaluationStatus::no_impact;
             result_.reason = "the motion reached from rest does not touch the stop at this frequency";
@@ -159,7 +160,7 @@ private:
     }
 
     void operate_below_edge() {
-        if (actuator_.law == model::StopLaw::none) {
+        if (!model::has_stop(actuator_.law)) {
             throw std::invalid_argument("drive.frequency = edge needs a stop: stop.law is none");
         }
         OperationOptions options;

@@ -3,7 +3,7 @@
 
 namespace percuss::io {
 
-void read_attractors(const SettingList& settings, model::Family family, study::AttractorsStudy& study,
+void read_attractors(const SettingList& settings, const model::Actuator& family, study::AttractorsStudy& study,
                      Troubles& troubles) {
     with(settings, "attractors.starts", troubles, [&](const Setting& s) { study.starts = parse_count(s, 1); });
     with(settings, "attractors.cycles", troubles,

@@ -16,8 +16,8 @@ constexpr int longest_branch_period = 64;  // drive cycles
 constexpr int most_points = 1'000'000;
 
 Key parse_along(const Setting& setting, const model::Specification& spec) {
-    const Key key = parse_key(model::trimmed(setting.value), spec.family);
-    const bool integer = key == Key::layers || key == Key::nd_layers;
+    const Key key = parse_key(model::trimmed(setting.value), *spec.type);
+    const bool integer = model::key_info(key).integer;
     if (integer) { throw bad_value(setting, "layers are whole numbers, nothing can be followed along them"); }
     return key;
 }
@@ -29,7 +29,7 @@ double parse_end(const Setting& setting, Key key) {
         value = parse_key_value(key, setting.value);
     } catch (const std::invalid_argument& error) { throw bad_value(setting, error.what()); }
     const model::KeyInfo& info = model::key_info(key);
-    const bool above = info.lowest_allowed && !is_frequency(key) ? value >= info.lowest : value > info.lowest;
+    const bool above = info.lowest_allowed && !model::is_frequency(key) ? value >= info.lowest : value > info.lowest;
     if (!(above && value <= info.highest)) {
         throw bad_value(setting, std::string(info.name) + " must be " + model::allowed_range(info));
     }
@@ -55,7 +55,7 @@ void read_range(const SettingList& settings, const std::string& section, std::op
 void read_branch(const SettingList& settings, const model::Specification& spec, study::BranchStudy& study,
                  Troubles& troubles) {
     with(settings, "branch.along", troubles, [&](const Setting& s) { study.along = parse_along(s, spec); });
-    read_range(settings, "branch", study.along.value_or(study::frequency_key(spec)), study.from, study.to, troubles);
+    read_range(settings, "branch", study.along.value_or(model::frequency_key(spec)), study.from, study.to, troubles);
     with(settings, "branch.period", troubles,
          [&](const Setting& s) { study.period = parse_count(s, 1, longest_branch_period); });
     with(settings, "branch.starts", troubles, [&](const Setting& s) { study.starts = parse_count(s, 0, 1'000'000); });
@@ -76,7 +76,7 @@ void read_locus(const SettingList& settings, const model::Specification& spec, s
     });
     with(settings, "locus.along", troubles, [&](const Setting& s) {
         study.along = parse_along(s, spec);
-        if (is_frequency(*study.along)) {
+        if (model::is_frequency(*study.along)) {
             study.along.reset();
             throw bad_value(s, "the drive frequency is the other parameter already; give another key");
         }

@@ -17,11 +17,6 @@ using model::trimmed;
 /// A list given as "none" is empty.
 bool is_empty_list(const Setting& setting) { return trimmed(setting.value) == "none"; }
 
-bool is_stop_key(model::Key key) {
-    return key == model::Key::stop_gap || key == model::Key::stop_stiffness || key == model::Key::stop_damping ||
-           key == model::Key::nd_gap || key == model::Key::nd_stiffness || key == model::Key::nd_damping;
-}
-
 /// Removes `word` from the end of `text` if it stands there by itself.
 bool take_last_word(std::string_view& text, std::string_view word) {
     if (!text.ends_with(word)) { return false; }
@@ -42,7 +37,7 @@ double parse_bound(model::Key key, std::string_view text) {
     return value;
 }
 
-design::DesignVariable parse_variable(const Setting& setting, model::Family family) {
+design::DesignVariable parse_variable(const Setting& setting, const model::Actuator& family) {
     constexpr std::string_view form = "expected KEY in LOWER .. UPPER [log] [integer]";
     const std::string_view text = trimmed(setting.value);
     const auto in = text.find(" in ");
@@ -81,18 +76,18 @@ design::DesignVariable parse_variable(const Setting& setting, model::Family fami
 }
 
 void add_variable(const Setting& setting, design::Problem& problem) {
-    const auto variable = parse_variable(setting, problem.actuator.family);
+    const auto variable = parse_variable(setting, *problem.actuator.type);
     const auto same = [&](const design::DesignVariable& other) { return other.key == variable.key; };
     if (std::any_of(problem.variables.begin(), problem.variables.end(), same)) {
         throw bad_value(setting, "this key is a variable already");
     }
-    if (is_stop_key(variable.key) && problem.actuator.law == model::StopLaw::none) {
+    if (model::is_of_stop(variable.key) && !model::has_stop(problem.actuator.law)) {
         throw bad_value(setting, "stop.law = none: there is no stop to vary");
     }
     problem.variables.push_back(variable);
 }
 
-Quantity parse_quantity_name(const Setting& setting, std::string_view name, model::Family family) {
+Quantity parse_quantity_name(const Setting& setting, std::string_view name, const model::Actuator& family) {
     std::vector<std::string> names;
     for (const Quantity quantity : design::reported_quantities(family)) {
         names.emplace_back(design::quantity_info(quantity).name);
@@ -108,7 +103,7 @@ Quantity parse_quantity_name(const Setting& setting, std::string_view name, mode
 }
 
 void add_objective(const Setting& setting, bool maximise, design::Problem& problem) {
-    const auto quantity = parse_quantity_name(setting, trimmed(setting.value), problem.actuator.family);
+    const auto quantity = parse_quantity_name(setting, trimmed(setting.value), *problem.actuator.type);
     if (!design::quantity_info(quantity).smooth) {
         throw bad_value(setting, "is a whole number and has no gradient: it cannot be an objective");
     }
@@ -119,7 +114,7 @@ void add_objective(const Setting& setting, bool maximise, design::Problem& probl
     problem.objectives.push_back({quantity, maximise});
 }
 
-design::Limit parse_limit(const Setting& setting, model::Family family) {
+design::Limit parse_limit(const Setting& setting, const model::Actuator& family) {
     const std::string_view text = trimmed(setting.value);
     const auto at_most = text.find("<=");
     const auto at_least = text.find(">=");
@@ -133,9 +128,8 @@ design::Limit parse_limit(const Setting& setting, model::Family family) {
     limit.text = text;
     const std::string_view bound = text.substr(position + 2);
     try {
-        limit.bound = family == model::Family::dielectric_elastomer_nondimensional
-                        ? model::parse_plain_number(bound)
-                        : model::parse_quantity(bound, design::quantity_info(limit.quantity).unit);
+        limit.bound = family.nondimensional ? model::parse_plain_number(bound)
+                                            : model::parse_quantity(bound, design::quantity_info(limit.quantity).unit);
     } catch (const std::invalid_argument& error) { throw bad_value(setting, error.what()); }
     return limit;
 }
@@ -165,7 +159,7 @@ void read_design(const SettingList& settings, design::Problem& problem, Troubles
             } else if (setting.key == "design.minimise") {
                 add_objective(setting, false, problem);
             } else if (setting.key == "design.limit") {
-                problem.limits.push_back(parse_limit(setting, problem.actuator.family));
+                problem.limits.push_back(parse_limit(setting, *problem.actuator.type));
             }
         });
     }

@@ -23,7 +23,7 @@ Json design_of(const design::Problem& problem) {
         if (problem.actuator.has(key)) { out[std::string(model::key_info(key).name)] = problem.actuator.value(key); }
     };
     if (problem.variables.empty()) {
-        for (const model::Key key : model::keys_of(problem.actuator.family)) { add(key); }
+        for (const model::Key key : problem.actuator.type->keys) { add(key); }
     }
     for (const design::DesignVariable& variable : problem.variables) { add(variable.key); }
     return out;
@@ -35,7 +35,7 @@ Json design_of(const std::vector<std::pair<model::Key, double>>& values) {
     return out;
 }
 
-Json per_quantity(const std::array<double, design::quantity_count>& values, model::Family family) {
+Json per_quantity(const std::array<double, design::quantity_count>& values, const model::Actuator& family) {
     Json out = Json::object();
     for (const Quantity quantity : design::reported_quantities(family)) {
         out[std::string(design::quantity_info(quantity).name)] = values[static_cast<std::size_t>(quantity)];
@@ -92,7 +92,7 @@ Json derivatives(const std::vector<model::Key>& keys, const std::vector<double>&
     return out;
 }
 
-Json gradients_of(const Evaluation& evaluation, model::Family family, bool with_edge) {
+Json gradients_of(const Evaluation& evaluation, const model::Actuator& family, bool with_edge) {
     Json out = Json::object();
     const auto add = [&](std::string_view name, const std::vector<double>& values) {
         if (!values.empty()) { out[std::string(name)] = derivatives(evaluation.gradient_keys, values); }
@@ -112,7 +112,7 @@ Json beginning(const ProblemFile& problem, std::string_view schema) {
 
 Json evaluation_document(const ProblemFile& problem, std::string_view schema, const Evaluation& evaluation,
                          double seconds, bool with_edge) {
-    const model::Family family = problem.study.design.actuator.family;
+    const model::Actuator& family = *problem.study.design.actuator.type;
     Json out = beginning(problem, schema);
     out["status"] = design::to_string(evaluation.status);
     out["reason"] = evaluation.reason;
@@ -215,7 +215,7 @@ std::string orbit_document(const ProblemFile& problem, const study::OrbitStudyRe
 }
 
 std::string optimise_document(const ProblemFile& problem, const study::OptimiseStudyResult& result) {
-    const model::Family family = problem.study.design.actuator.family;
+    const model::Actuator& family = *problem.study.design.actuator.type;
     Json out = beginning(problem, "percuss/optimise/1");
     out["status"] = result.status;
     out["reason"] = result.reason;

@@ -1,6 +1,6 @@
 #include "io/branch_results.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "io/csv_table.hpp"
 #include "model/number_text.hpp"
 

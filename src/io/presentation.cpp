@@ -76,7 +76,7 @@ Block operating_point_block(const ProblemFile& problem, const design::OperatingP
 
 Block quantities_block(const ProblemFile& problem, const Evaluation& evaluation) {
     Block block{"Quantities", "", {"quantity", "value", "error estimate", "meaning"}, {}};
-    for (const Quantity quantity : design::reported_quantities(problem.study.design.actuator.family)) {
+    for (const Quantity quantity : design::reported_quantities(*problem.study.design.actuator.type)) {
         const double value = evaluation.value(quantity);
         if (!std::isnan(value)) {
             const double error = evaluation.error_estimates[static_cast<std::size_t>(quantity)];
@@ -116,7 +116,7 @@ Block orbit_block(const ProblemFile& problem, const design::OrbitReport& orbit) 
 }
 
 /// Keys down, quantities across, a few at a time so that lines stay short.
-std::vector<Block> gradient_blocks(const Evaluation& evaluation, model::Family family) {
+std::vector<Block> gradient_blocks(const Evaluation& evaluation, const model::Actuator& family) {
     std::vector<std::pair<std::string, const std::vector<double>*>> all;
     for (const Quantity quantity : design::reported_quantities(family)) {
         all.emplace_back(design::quantity_info(quantity).name,
@@ -157,7 +157,7 @@ void add_evaluation(const ProblemFile& problem, const Evaluation& evaluation, bo
     out.blocks.push_back(operating_point_block(problem, evaluation.operating_point, with_edge));
     out.blocks.push_back(quantities_block(problem, evaluation));
     if (!evaluation.orbit.state.empty()) { out.blocks.push_back(orbit_block(problem, evaluation.orbit)); }
-    for (Block& block : gradient_blocks(evaluation, problem.study.design.actuator.family)) {
+    for (Block& block : gradient_blocks(evaluation, *problem.study.design.actuator.type)) {
         out.blocks.push_back(std::move(block));
     }
     out.blocks.push_back(uniqueness_block(evaluation.uniqueness));

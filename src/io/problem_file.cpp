@@ -37,7 +37,7 @@ void check_values(const design::Problem& problem, FrequencyUse use, Troubles& tr
     for (const std::string& violation : model::violations(problem.actuator)) {
         if (!is_known_trouble(troubles, violation)) { troubles.add(violation); }
     }
-    if (use == FrequencyUse::operates && problem.actuator.law == model::StopLaw::none &&
+    if (use == FrequencyUse::operates && !model::has_stop(problem.actuator.law) &&
         !model::has_frequency(problem.actuator) && !is_known_trouble(troubles, "drive.frequency ")) {
         troubles.add("drive.frequency = edge: stop.law = none leaves no edge to operate at, give a frequency");
     }
@@ -51,18 +51,18 @@ ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting>
     problem.name = file.stem().string();
 
     design::Problem& design = problem.study.design;
-    design.actuator.family = family_of(settings);
+    design.actuator.type = &family_of(settings);
     read_actuator(settings, design, troubles);
     read_design(settings, design, troubles);
     read_sampling(settings, design.sampling, troubles);
     read_optimiser(settings, problem.study.optimiser, troubles);
     read_solver(settings, design.solver, troubles);
-    read_orbit(settings, design.actuator.family, problem.orbit, troubles);
-    read_simulate(settings, design.actuator.family, problem.simulate, troubles);
-    read_sweep(settings, design.actuator.family, problem.sweep, troubles);
+    read_orbit(settings, *design.actuator.type, problem.orbit, troubles);
+    read_simulate(settings, *design.actuator.type, problem.simulate, troubles);
+    read_sweep(settings, *design.actuator.type, problem.sweep, troubles);
     read_branch(settings, design.actuator, problem.branch, troubles);
     read_locus(settings, design.actuator, problem.locus, troubles);
-    read_attractors(settings, design.actuator.family, problem.attractors, troubles);
+    read_attractors(settings, *design.actuator.type, problem.attractors, troubles);
     model::apply_defaults(design.actuator);
     fill_in_variables(design);
     check_values(design, use, troubles);
@@ -84,8 +84,8 @@ ProblemFile inspect_problem(const std::filesystem::path& file, std::span<const S
 
 void require_frequency(const ProblemFile& problem) {
     if (!model::has_frequency(problem.study.design.actuator)) {
-        const bool plain = problem.study.design.actuator.family == model::Family::dielectric_elastomer_nondimensional;
-        throw ProblemError(std::string(plain ? "nondimensional.omega" : "drive.frequency") +
+        const model::Key key = model::frequency_key(problem.study.design.actuator);
+        throw ProblemError(std::string(model::key_info(key).name) +
                            " = edge: an orbit is computed at a given frequency, give one");
     }
 }
@@ -113,9 +113,7 @@ void require_locus_range(const ProblemFile& problem) {
 }
 
 int problem_states(const ProblemFile& problem) {
-    return model::actuator_kind(problem.study.design.actuator.family) == model::ActuatorKind::spring_mass
-             ? model::spring::states
-             : model::membrane::states;
+    return static_cast<int>(problem.study.design.actuator.type->states.size());
 }
 
 void require_one_objective(const ProblemFile& problem) {

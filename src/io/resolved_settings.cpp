@@ -16,17 +16,7 @@ namespace percuss::io {
 
 namespace {
 
-using model::Family;
 using model::Key;
-
-std::string_view law_text(model::StopLaw law) {
-    switch (law) {
-        case model::StopLaw::kelvin_voigt: return "kelvin-voigt";
-        case model::StopLaw::no_tension: return "no-tension";
-        case model::StopLaw::none: return "none";
-    }
-    return "unknown";
-}
 
 std::string_view single_stable_text(design::SingleStable level) {
     switch (level) {
@@ -69,10 +59,9 @@ public:
 
     std::vector<ResolvedSetting> run() {
         const design::Problem& design = problem_.study.design;
-        const bool is_spring = design.actuator.family == Family::spring_mass;
-        text("actuator.type", is_spring ? "spring-mass" : "dielectric-elastomer");
+        text("actuator.type", std::string(design.actuator.type->type));
         model_keys();
-        text("stop.law", std::string(law_text(design.actuator.law)));
+        text("stop.law", std::string(model::to_string(design.actuator.law)));
         if (!model::has_frequency(design.actuator)) { number("drive.margin", design.margin, ""); }
         design_keys(design);
         number("uniqueness.starts", static_cast<double>(design.sampling.starts), "");
@@ -89,8 +78,8 @@ public:
         text("solver.instruction_set", design.solver.instruction_set);
         if (problem_.orbit.start) { text("orbit.start", state_text(*problem_.orbit.start)); }
         number("orbit.period", problem_.orbit.period, "");
-        simulate_keys(problem_.simulate, design.actuator.family);
-        sweep_keys(problem_.sweep, design.actuator.family);
+        simulate_keys(problem_.simulate, *design.actuator.type);
+        sweep_keys(problem_.sweep, *design.actuator.type);
         branch_keys();
         attractors_keys(problem_.attractors);
         return std::move(resolved_);
@@ -99,14 +88,13 @@ public:
 private:
     void model_keys() {
         const model::Specification& spec = problem_.study.design.actuator;
-        for (const Key key : model::keys_of(spec.family)) {
+        for (const Key key : spec.type->keys) {
             const model::KeyInfo& info = model::key_info(key);
             if (spec.has(key)) {
                 number(std::string(info.name), spec.value(key), info.unit);
-            } else if (key == Key::sm_omega || (key == Key::drive_frequency && model::has_frequency(spec))) {
-                continue;  // the other way to give the frequency is in use
-            } else if (is_frequency(key)) {
-                text(std::string(info.name), "edge");
+            } else if (model::is_frequency(key)) {  // of several ways to give it one is in use
+                const bool at_edge = !model::has_frequency(spec) && key == model::frequency_key(spec);
+                if (at_edge) { text(std::string(info.name), "edge"); }
             } else if (model::is_required(spec, key)) {
                 text(std::string(info.name), "");
             }
@@ -125,7 +113,7 @@ private:
         text("design.single_stable", std::string(single_stable_text(design.single_stable)));
     }
 
-    void simulate_keys(const study::SimulateStudy& study, Family family) {
+    void simulate_keys(const study::SimulateStudy& study, const model::Actuator& family) {
         const bool given = study.from == study::SimulationStart::state;
         text("simulate.start", given                                         ? state_text(study.start)
                                : study.from == study::SimulationStart::orbit ? "orbit"
@@ -135,8 +123,8 @@ private:
         text("simulate.kick", study.kick ? kick_text(*study.kick, family) : "none");
     }
 
-    void sweep_keys(const study::SweepStudy& study, Family family) {
-        const bool plain = family == Family::dielectric_elastomer_nondimensional;
+    void sweep_keys(const study::SweepStudy& study, const model::Actuator& family) {
+        const bool plain = family.nondimensional;
         const double unit = plain ? 1.0 : 2.0 * std::numbers::pi;
         text("sweep.mode", study.mode == study::SweepMode::chirp ? "chirp" : "steps");
         if (study.from) { number("sweep.from", *study.from / unit, plain ? "" : "Hz"); }
@@ -150,7 +138,7 @@ private:
 
     void branch_keys() {
         const study::BranchStudy& branch = problem_.branch;
-        const Key along = branch.along.value_or(study::frequency_key(problem_.study.design.actuator));
+        const Key along = branch.along.value_or(model::frequency_key(problem_.study.design.actuator));
         if (branch.along) { text("branch.along", std::string(model::key_info(along).name)); }
         if (branch.from) { number("branch.from", *branch.from, model::key_info(along).unit); }
         if (branch.to) { number("branch.to", *branch.to, model::key_info(along).unit); }
@@ -252,7 +240,7 @@ std::string problem_hash(const ProblemFile& problem) {
 }
 
 std::string_view units_of(const ProblemFile& problem) {
-    const bool plain = problem.study.design.actuator.family == Family::dielectric_elastomer_nondimensional;
+    const bool plain = problem.study.design.actuator.type->nondimensional;
     return plain ? "nondimensional" : "si";
 }
 

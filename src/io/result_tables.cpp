@@ -42,7 +42,7 @@ std::vector<std::pair<model::Key, double>> design_values(const design::Problem& 
         values.emplace_back(variable.key, problem.actuator.value(variable.key));
     }
     if (values.empty()) {
-        for (const model::Key key : model::keys_of(problem.actuator.family)) {
+        for (const model::Key key : problem.actuator.type->keys) {
             if (problem.actuator.has(key)) { values.emplace_back(key, problem.actuator.value(key)); }
         }
     }
@@ -57,7 +57,7 @@ std::string quantities_csv(const ProblemFile& problem, const std::vector<std::pa
     }
     row.add("omega", "", evaluation.operating_point.omega);
     row.add("edge_omega", "", evaluation.operating_point.edge_omega);
-    const auto quantities = design::reported_quantities(problem.study.design.actuator.family);
+    const auto quantities = design::reported_quantities(*problem.study.design.actuator.type);
     for (const Quantity quantity : quantities) {
         row.add(std::string(design::quantity_info(quantity).name), unit_of(problem, quantity),
                 evaluation.value(quantity));
@@ -82,7 +82,7 @@ std::string gradients_csv(const ProblemFile& problem, const design::Evaluation& 
         for (std::size_t i = 0; i < rows.size(); ++i) { rows[i].push_back(cell(values[i])); }
     };
     if (!rows.empty()) {
-        for (const Quantity quantity : design::reported_quantities(problem.study.design.actuator.family)) {
+        for (const Quantity quantity : design::reported_quantities(*problem.study.design.actuator.type)) {
             add(std::string(design::quantity_info(quantity).name), unit_of(problem, quantity),
                 evaluation.gradients.quantity[static_cast<std::size_t>(quantity)]);
         }

@@ -19,8 +19,7 @@ namespace {
 
 SettingInfo from_model(model::Key key) {
     const model::KeyInfo& info = model::key_info(key);
-    const bool is_frequency =
-        key == model::Key::drive_frequency || key == model::Key::nd_omega || key == model::Key::sm_omega;
+    const bool is_frequency = model::is_frequency(key);
     SettingInfo setting;
     setting.name = info.name;
     setting.unit = info.unit == "1" ? "" : std::string(info.unit);
@@ -31,8 +30,7 @@ SettingInfo from_model(model::Key key) {
 }
 
 void add_model_keys(std::vector<SettingInfo>& table, std::string_view section) {
-    for (std::size_t i = 0; i < model::key_count; ++i) {
-        const auto key = static_cast<model::Key>(i);
+    for (const model::Key key : model::all_keys()) {
         if (model::key_info(key).name.starts_with(section)) { table.push_back(from_model(key)); }
     }
 }

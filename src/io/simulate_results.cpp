@@ -38,7 +38,7 @@ std::string_view start_of(SimulationStart start) {
     return "unknown";
 }
 
-model::Family family_of(const ProblemFile& problem) { return problem.study.design.actuator.family; }
+const model::Actuator& family_of(const ProblemFile& problem) { return *problem.study.design.actuator.type; }
 
 Json kick_of(const ProblemFile& problem) {
     if (!problem.simulate.kick) { return nullptr; }

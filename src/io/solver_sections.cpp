@@ -16,10 +16,7 @@ constexpr double coarsest_solver_tolerance = 1e-2;
 
 }  // namespace
 
-std::size_t states_of(model::Family family) {
-    const bool is_spring = model::actuator_kind(family) == model::ActuatorKind::spring_mass;
-    return static_cast<std::size_t>(is_spring ? model::spring::states : model::membrane::states);
-}
+std::size_t states_of(const model::Actuator& family) { return family.states.size(); }
 
 void read_sampling(const SettingList& settings, design::Sampling& sampling, Troubles& troubles) {
     with(settings, "uniqueness.starts", troubles,
@@ -59,7 +56,8 @@ void read_solver(const SettingList& settings, design::SolverOptions& options, Tr
          [&](const Setting& s) { options.instruction_set = parse_choice(s, instruction_sets); });
 }
 
-void read_orbit(const SettingList& settings, model::Family family, study::OrbitStudy& orbit, Troubles& troubles) {
+void read_orbit(const SettingList& settings, const model::Actuator& family, study::OrbitStudy& orbit,
+                Troubles& troubles) {
     with(settings, "orbit.start", troubles, [&](const Setting& s) { orbit.start = parse_state(s, states_of(family)); });
     with(settings, "orbit.period", troubles,
          [&](const Setting& s) { orbit.period = parse_count(s, 1, longest_period); });

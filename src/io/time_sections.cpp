@@ -4,6 +4,7 @@
 #include "model/number_text.hpp"
 #include "model/units.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -12,7 +13,6 @@ namespace percuss::io {
 
 namespace {
 
-using model::Family;
 using model::trimmed;
 using study::Kick;
 using study::SimulationStart;
@@ -21,11 +21,9 @@ using study::SweepMode;
 constexpr double largest_share = 10.0;
 constexpr int longest_sweep_period = 12;  // drive cycles
 
-std::string_view drive_word(Family family) { return family == Family::spring_mass ? "force" : "voltage"; }
-
-ProblemError bad_kick(const Setting& setting, Family family, const std::string& why) {
-    const std::string drive(drive_word(family));
-    const std::string unit = family == Family::dielectric_elastomer_nondimensional ? "" : " m/s";
+ProblemError bad_kick(const Setting& setting, const model::Actuator& family, const std::string& why) {
+    const std::string drive(family.drive_word);
+    const std::string unit = family.nondimensional ? "" : " m/s";
     return bad_value(setting, why + "; allowed are 'velocity VALUE at cycle N' and '" + drive +
                                   " SHARE for N cycles at cycle N', as in 'velocity 0.05" + unit +
                                   " at cycle 50' and '" + drive + " 50 % for 1 cycle at cycle 50'");
@@ -53,7 +51,7 @@ std::string with_single_blanks(std::string_view text) {
 
 class KickParser {
 public:
-    KickParser(const Setting& setting, Family family) : setting_(setting), family_(family) {}
+    KickParser(const Setting& setting, const model::Actuator& family) : setting_(setting), family_(family) {}
 
     [[nodiscard]] Kick parse() const {
         const std::string text = with_single_blanks(setting_.value);
@@ -66,7 +64,7 @@ public:
         const std::string_view rest = trimmed(what.substr(word.size()));
         if (word == "velocity") {
             kick.velocity = velocity(rest);
-        } else if (word == drive_word(family_)) {
+        } else if (word == family_.drive_word) {
             kick.kind = Kick::Kind::drive;
             read_drive(rest, kick);
         } else {
@@ -89,8 +87,7 @@ private:
 
     [[nodiscard]] double velocity(std::string_view text) const {
         try {
-            return family_ == Family::dielectric_elastomer_nondimensional ? model::parse_plain_number(text)
-                                                                          : model::parse_quantity(text, "m/s");
+            return family_.nondimensional ? model::parse_plain_number(text) : model::parse_quantity(text, "m/s");
         } catch (const std::invalid_argument& error) { throw trouble(std::string("velocity: ") + error.what()); }
     }
 
@@ -115,10 +112,10 @@ private:
     }
 
     const Setting& setting_;
-    Family family_;
+    const model::Actuator& family_;
 };
 
-void read_start(const Setting& setting, Family family, study::SimulateStudy& study) {
+void read_start(const Setting& setting, const model::Actuator& family, study::SimulateStudy& study) {
     const std::string_view text = trimmed(setting.value);
     if (text == "rest" || text == "orbit") {
         study.from = text == "rest" ? SimulationStart::rest : SimulationStart::orbit;
@@ -133,13 +130,18 @@ void read_start(const Setting& setting, Family family, study::SimulateStudy& stu
     study.from = SimulationStart::state;
 }
 
+bool takes_rad_per_second(const model::Actuator& actuator) {
+    return std::any_of(actuator.frequencies.begin(), actuator.frequencies.end(),
+                       [](model::Key key) { return model::key_info(key).unit == "rad/s"; });
+}
+
 /// An angular frequency: omega of a nondimensional problem, else in Hz, or for spring-mass problems also in rad/s.
-double parse_frequency(const Setting& setting, Family family) {
+double parse_frequency(const Setting& setting, const model::Actuator& family) {
     double value = 0.0;
     try {
-        if (family == Family::dielectric_elastomer_nondimensional) {
+        if (family.nondimensional) {
             value = model::parse_plain_number(setting.value);
-        } else if (family == Family::spring_mass && setting.value.find("rad") != std::string::npos) {
+        } else if (takes_rad_per_second(family) && setting.value.find("rad") != std::string::npos) {
             value = model::parse_quantity(setting.value, "rad/s");
         } else {
             value = 2.0 * std::numbers::pi * model::parse_quantity(setting.value, "Hz");
@@ -156,7 +158,8 @@ SweepMode parse_mode(const Setting& setting) {
 
 }  // namespace
 
-void read_simulate(const SettingList& settings, Family family, study::SimulateStudy& study, Troubles& troubles) {
+void read_simulate(const SettingList& settings, const model::Actuator& family, study::SimulateStudy& study,
+                   Troubles& troubles) {
     with(settings, "simulate.start", troubles, [&](const Setting& s) { read_start(s, family, study); });
     with(settings, "simulate.cycles", troubles, [&](const Setting& s) { study.cycles = parse_count(s, 1); });
     with(settings, "simulate.samples", troubles, [&](const Setting& s) { study.samples = parse_count(s, 1, 100000); });
@@ -171,7 +174,8 @@ void read_simulate(const SettingList& settings, Family family, study::SimulateSt
     });
 }
 
-void read_sweep(const SettingList& settings, Family family, study::SweepStudy& study, Troubles& troubles) {
+void read_sweep(const SettingList& settings, const model::Actuator& family, study::SweepStudy& study,
+                Troubles& troubles) {
     with(settings, "sweep.mode", troubles, [&](const Setting& s) { study.mode = parse_mode(s); });
     with(settings, "sweep.from", troubles, [&](const Setting& s) { study.from = parse_frequency(s, family); });
     with(settings, "sweep.to", troubles, [&](const Setting& s) {
@@ -189,13 +193,13 @@ void read_sweep(const SettingList& settings, Family family, study::SweepStudy& s
          [&](const Setting& s) { study.chirp_cycles = parse_count(s, 1, 10'000'000); });
 }
 
-std::string kick_text(const Kick& kick, Family family) {
+std::string kick_text(const Kick& kick, const model::Actuator& family) {
     const std::string at = " at cycle " + model::exact_text(kick.at);
     if (kick.kind == Kick::Kind::velocity) {
-        const bool plain = family == Family::dielectric_elastomer_nondimensional;
+        const bool plain = family.nondimensional;
         return "velocity " + model::exact_text(kick.velocity) + (plain ? "" : " m/s") + at;
     }
-    return std::string(drive_word(family)) + " " + model::exact_text(kick.share) + " for " +
+    return std::string(family.drive_word) + " " + model::exact_text(kick.share) + " for " +
            model::exact_text(kick.duration) + (kick.duration == 1.0 ? " cycle" : " cycles") + at;
 }
 

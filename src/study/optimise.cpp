@@ -1,6 +1,6 @@
 #include "study/optimise.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "optimise/multi_start.hpp"
 #include "optimise/solve.hpp"
 #include "study/evaluate.hpp"
