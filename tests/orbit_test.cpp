@@ -307,7 +307,7 @@ TEST_CASE("derivatives of an orbit and its observables along parameters, implici
             for (const orbit::Observed& o : image.observed) { all.push_back(o.value); }
             return all;
         };
-        const std::size_t count = 4 + orbit::observable_count;
+        const std::size_t count = 4 + orbit::first_mean;  // membranes have no mean signals
         const auto numeric = test::ridders_many(values, count, 1e-3 * size);
         const std::vector<double> at_base = values(0.0);
         for (std::size_t c = 0; c < count; ++c) {
