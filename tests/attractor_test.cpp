@@ -2,6 +2,7 @@
 
 #include "attractor/ensemble.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
 #include "orbit/polish.hpp"
 #include "relative.hpp"
 
@@ -26,7 +27,7 @@ using test::paper_defaults;
 /// The paper's actuator at a frequency, with the two integrators that an ensemble takes.
 struct Case {
     std::unique_ptr<flow::Integrator> exact_integrator = test::membranes();
-    std::unique_ptr<flow::Integrator> scout_integrator = test::membranes(model::StopLaw::kelvin_voigt, 1e-8);
+    std::unique_ptr<flow::Integrator> scout_integrator = test::membranes(model::ContactLaw::kelvin_voigt, 1e-8);
     flow::System exact, scout;
     Box box;
 
@@ -45,8 +46,8 @@ struct Case {
 
 /// c k1 k3 F gap k delta_i omega
 struct SpringCase {
-    std::unique_ptr<flow::Integrator> exact_integrator = test::spring(model::StopLaw::none);
-    std::unique_ptr<flow::Integrator> scout_integrator = test::spring(model::StopLaw::none, 1e-8);
+    std::unique_ptr<flow::Integrator> exact_integrator = test::spring(model::ContactLaw::none);
+    std::unique_ptr<flow::Integrator> scout_integrator = test::spring(model::ContactLaw::none, 1e-8);
     flow::System exact, scout;
     explicit SpringCase(const flow::ParameterVector& p)
         : exact{exact_integrator.get(), p, nullptr},

@@ -5,6 +5,8 @@
 #include "branch/switching.hpp"
 #include "branch/trace.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "orbit/polish.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
@@ -275,16 +277,16 @@ TEST_CASE("a stop that cannot pull grazes where the free motion does") {
     // Designs in which the release without force has a second root, at a negative duration.
     verbs::StudyProblem problem = paper();
     model::Specification& spec = problem.design.actuator;
-    spec.set(Key::nd_stiffness, 70220.0);
-    spec.set(Key::nd_gap, 0.0319);
-    spec.set(Key::nd_voltage, 0.2246);
-    spec.set(Key::nd_layers, 6.0);
-    spec.set(Key::nd_delta_a, 0.02335);
-    spec.set(Key::nd_delta_b, 5.248);
-    spec.set(Key::nd_damping, 19.65);
+    spec.set(percuss::model::membrane::key::nd_stiffness, 70220.0);
+    spec.set(percuss::model::membrane::key::nd_gap, 0.0319);
+    spec.set(percuss::model::membrane::key::nd_voltage, 0.2246);
+    spec.set(percuss::model::membrane::key::nd_layers, 6.0);
+    spec.set(percuss::model::membrane::key::nd_delta_a, 0.02335);
+    spec.set(percuss::model::membrane::key::nd_delta_b, 5.248);
+    spec.set(percuss::model::membrane::key::nd_damping, 19.65);
     std::vector<double> lower;
     std::vector<double> upper;
-    for (const auto law : {model::StopLaw::kelvin_voigt, model::StopLaw::no_tension}) {
+    for (const auto law : {model::ContactLaw::kelvin_voigt, model::ContactLaw::no_tension}) {
         spec.law = law;
         const auto result = verbs::run_branch(problem, {}, {}, {});
         CHECK(result.ending == verbs::Ending::verified);
@@ -394,7 +396,8 @@ TEST_CASE("along a design variable: an S-curve in the voltage, and orbits solved
         CHECK(nearest(across.branches.at(0), found.kind, 1.9).point.omega == relative(1.9, 1e-10));
     }
 
-    for (const Key key : {Key::nd_gap, Key::nd_stiffness, Key::nd_damping, Key::nd_delta_b}) {
+    for (const Key key : {percuss::model::membrane::key::nd_gap, percuss::model::membrane::key::nd_stiffness,
+                          percuss::model::membrane::key::nd_damping, percuss::model::membrane::key::nd_delta_b}) {
         CAPTURE(model::key_info(key).name);
         verbs::BranchOptions other;
         other.along = key;

@@ -3,6 +3,8 @@
 
 #include "design/families.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
 #include "verbs/branch/branch.hpp"
@@ -79,7 +81,7 @@ TEST_CASE("the published fold curve of the soft stop") {
         CHECK(curve.points.back().value == relative(0.5, 1e-12));
     }
     // The same in the other direction.
-    const auto back = follow(problem, Kind::fold, Key::sm_force, 0.5, 0.16, 17);
+    const auto back = follow(problem, Kind::fold, percuss::model::spring::key::force, 0.5, 0.16, 17);
     const Locus& again = back.curves.back();
     CHECK(std::abs(at_value(again, 0.2, 1.6).omega - 1.599768196) < 6e-10);
 }
@@ -109,10 +111,12 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
     for (const double value : {0.3, 0.22}) {
         CAPTURE(value);
         const double omega = at_value(curve, value, 2.5).omega;
-        CHECK(omega == relative(on_main_branch(problem, Kind::fold, Key::nd_voltage, value, omega), 1e-10));
+        CHECK(omega ==
+              relative(on_main_branch(problem, Kind::fold, percuss::model::membrane::key::nd_voltage, value, omega),
+                       1e-10));
     }
 
-    const auto up = follow(problem, Kind::fold, Key::nd_voltage, 0.201, 0.15);
+    const auto up = follow(problem, Kind::fold, percuss::model::membrane::key::nd_voltage, 0.201, 0.15);
     REQUIRE(up.curves.size() == 1);
     REQUIRE(up.curves[0].turns.size() == 1);
     CHECK(up.curves[0].turns[0].cusp);
@@ -132,25 +136,30 @@ TEST_CASE("grazing and flip curves lie where the branches have them") {
     REQUIRE(!grazing.curves.empty());
     for (const auto& gap : {0.12, 0.15}) {
         const double omega = at_value(grazing.curves[0], gap, 1.9).omega;
-        CHECK(omega == relative(on_main_branch(problem, Kind::grazing, Key::nd_gap, gap, omega), 1e-10));
+        CHECK(
+            omega ==
+            relative(on_main_branch(problem, Kind::grazing, percuss::model::membrane::key::nd_gap, gap, omega), 1e-10));
         CHECK(at_value(grazing.curves[0], gap, 1.9).peak_force == 0.0);
     }
     // Upper and lower grazing meet where the stroke at resonance is the gap: a turn, and no cusp of folds.
     for (const auto& known : test::edge_reference::vs_phi_pp) {
-        const auto voltage = follow(problem, Kind::grazing, Key::nd_voltage, 0.4, known[0], 4);
+        const auto voltage =
+            follow(problem, Kind::grazing, percuss::model::membrane::key::nd_voltage, 0.4, known[0], 4);
         CHECK(std::abs(at_value(voltage.curves.at(0), known[0], known[1]).omega - known[1]) < 1e-6);
     }
-    const auto meeting = follow(problem, Kind::grazing, Key::nd_voltage, 0.4, 0.1, 10);
+    const auto meeting = follow(problem, Kind::grazing, percuss::model::membrane::key::nd_voltage, 0.4, 0.1, 10);
     REQUIRE(meeting.curves.size() == 1);
     REQUIRE(meeting.curves[0].turns.size() == 1);
     CHECK_FALSE(meeting.curves[0].turns[0].cusp);
     CHECK(meeting.curves[0].turns[0].value > 0.19);
     CHECK(meeting.curves[0].turns[0].value < 0.2);
 
-    const auto flip = follow(problem, Kind::flip, Key::nd_stiffness, 2500.0, 5000.0, 10);
+    const auto flip = follow(problem, Kind::flip, percuss::model::membrane::key::nd_stiffness, 2500.0, 5000.0, 10);
     REQUIRE(!flip.curves.empty());
     const double omega = at_value(flip.curves[0], 4000.0, 1.75).omega;
-    CHECK(omega == relative(on_main_branch(problem, Kind::flip, Key::nd_stiffness, 4000.0, omega), 1e-10));
+    CHECK(omega ==
+          relative(on_main_branch(problem, Kind::flip, percuss::model::membrane::key::nd_stiffness, 4000.0, omega),
+                   1e-10));
 }
 
 TEST_CASE("a torus curve") {
@@ -164,7 +173,9 @@ TEST_CASE("a torus curve") {
     CHECK(torus.ending == verbs::Ending::verified);
     REQUIRE(!torus.curves.empty());
     const LocusPoint& there = at_value(torus.curves[0], 0.023, 1.79);
-    CHECK(there.omega == relative(on_main_branch(problem, Kind::torus, Key::nd_delta_a, 0.023, there.omega), 1e-9));
+    CHECK(there.omega ==
+          relative(on_main_branch(problem, Kind::torus, percuss::model::membrane::key::nd_delta_a, 0.023, there.omega),
+                   1e-9));
     CHECK(there.angle != 0.0);
 }
 
@@ -174,7 +185,9 @@ TEST_CASE("families move their parameters as their directions say") {
     const auto integrator = test::membranes();
     const flow::System system{integrator.get(), model::scale(spec).parameters, nullptr};
     CHECK(design::frequency_family(system).at(1.7).omega() == 1.7);
-    for (const Key key : {Key::moving_mass, Key::stop_gap, Key::drive_voltage, Key::prestretch, Key::outer_radius}) {
+    for (const Key key :
+         {percuss::model::membrane::key::moving_mass, Key::stop_gap, percuss::model::membrane::key::drive_voltage,
+          percuss::model::membrane::key::prestretch, percuss::model::membrane::key::outer_radius}) {
         CAPTURE(model::key_info(key).name);
         const double value = spec.value(key);
         const flow::ParameterFamily alone = design::key_family(system, spec, key, value);
@@ -205,9 +218,9 @@ TEST_CASE("families move their parameters as their directions say") {
         check(both, {1.8, 1.1 * value});
         CHECK(both.at(std::vector<double>{1.8, value}).omega() == 1.8);
     }
-    CHECK_THROWS_WITH_AS(design::key_family(system, spec, Key::nd_gap, 1.0), doctest::Contains("nondimensional.g"),
-                         std::invalid_argument);
-    CHECK(design::is_drive_frequency(Key::sm_omega));
+    CHECK_THROWS_WITH_AS(design::key_family(system, spec, percuss::model::membrane::key::nd_gap, 1.0),
+                         doctest::Contains("nondimensional.g"), std::invalid_argument);
+    CHECK(design::is_drive_frequency(percuss::model::spring::key::omega));
     CHECK_FALSE(design::is_drive_frequency(Key::stop_gap));
 }
 
@@ -216,17 +229,17 @@ TEST_CASE("misuse and early ends") {
     const auto run = [&](const verbs::LocusOptions& study) { return verbs::run_locus(problem, study, {}, {}); };
     verbs::LocusOptions study;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("locus.along"), std::invalid_argument);
-    study.along = Key::nd_voltage;
+    study.along = percuss::model::membrane::key::nd_voltage;
     study.from = 0.3;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("locus.to"), std::invalid_argument);
     study.to = 0.3;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("empty"), std::invalid_argument);
-    study.along = Key::nd_omega;
+    study.along = percuss::model::membrane::key::nd_omega;
     study.to = 0.4;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("drive frequency"), std::invalid_argument);
-    study.along = Key::sm_force;
+    study.along = percuss::model::spring::key::force;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("spring-mass.force"), std::invalid_argument);
-    study.along = Key::nd_voltage;
+    study.along = percuss::model::membrane::key::nd_voltage;
     study.max_points = 5;
     const auto few = run(study);
     CHECK(few.ending == verbs::Ending::budget);

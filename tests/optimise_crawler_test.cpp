@@ -2,6 +2,7 @@
 
 #include "design/evaluate.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
 #include "verbs/optimise/design_nlp.hpp"
@@ -69,7 +70,7 @@ TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
     CHECK(r.ending == verbs::Ending::verified);
     CHECK(r.best.status == EvaluationStatus::ok);
     CHECK(r.best.value(Quantity::peak_force) > 3.37);
-    CHECK(value_of(r.design, Key::layers) == 3.0);
+    CHECK(value_of(r.design, percuss::model::membrane::key::layers) == 3.0);
     CHECK(r.kkt_residual < 1e-6);
     CHECK(r.objective_error < 1e-9 * r.best.value(Quantity::peak_force));
     REQUIRE(r.per_layers.size() == 4);

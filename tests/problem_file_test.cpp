@@ -76,11 +76,11 @@ TEST_CASE("the shipped actuator is the paper's") {
     const ProblemFile problem = verbs::read_problem(shipped("wu2022-actuator.ini"), {});
     const model::Specification& spec = problem.design.actuator;
     CHECK(problem.name == "wu2022-actuator");
-    CHECK(spec.family == model::Family::dielectric_elastomer_si);
+    CHECK(spec.type == &model::membrane::si);
     CHECK(spec.value(Key::stop_gap) == 0.6e-3);
     CHECK(spec.value(Key::stop_stiffness) == 51.9e3);
-    CHECK(spec.value(Key::drive_voltage) == 3300.0);
-    CHECK(spec.value(Key::layers) == 1.0);
+    CHECK(spec.value(percuss::model::membrane::key::drive_voltage) == 3300.0);
+    CHECK(spec.value(percuss::model::membrane::key::layers) == 1.0);
     CHECK_FALSE(model::has_frequency(spec));
     CHECK(problem.design.margin == 0.01);
     CHECK(problem.design.variables.empty());
@@ -104,7 +104,7 @@ TEST_CASE("the shipped crawler is the main job") {
     CHECK_FALSE(design.variables[0].logarithmic);
     CHECK(design.variables[1].logarithmic);
     CHECK(design.variables[1].upper == 200e3);
-    CHECK(design.variables[2].key == Key::layers);
+    CHECK(design.variables[2].key == percuss::model::membrane::key::layers);
     CHECK(design.variables[2].integer);
     REQUIRE(design.objectives.size() == 1);
     CHECK(design.objectives[0].maximise);

@@ -1,7 +1,8 @@
 #include "verbs/simulate/simulate.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "memory_table.hpp"
+#include "model/membrane/membrane.hpp"
 #include "orbit/polish.hpp"
 #include "program_run.hpp"
 #include "reference_values.hpp"

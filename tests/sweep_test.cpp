@@ -1,4 +1,4 @@
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "memory_table.hpp"
 #include "orbit/frequency_sweep.hpp"
 #include "orbit/polish.hpp"
@@ -24,7 +24,9 @@ struct Bench {
     verbs::StudyProblem problem;
     design::Scene scene;
     flow::System system;
-    explicit Bench(const std::string& name) : problem(test::shipped_problem(name)), scene(make_scene(problem.design)) {
+    explicit Bench(const std::string& name)
+        : problem(test::shipped_problem(name)),
+          scene(make_integrators(problem.design)) {
         system = {scene.own.get(), model::scale(problem.design.actuator).parameters, nullptr};
     }
     [[nodiscard]] flow::State rest() const { return scene.own->rest_state(system.parameters); }

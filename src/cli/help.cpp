@@ -57,13 +57,11 @@ Block values_block() {
         "quantity or key; none clears the list first.");
 }
 
-struct Described {
-    model::Family family;
-    std::string_view name;
-};
-constexpr std::array described = {Described{model::Family::dielectric_elastomer_si, "dielectric-elastomer"},
-                                  Described{model::Family::dielectric_elastomer_nondimensional, "[nondimensional]"},
-                                  Described{model::Family::spring_mass, "spring-mass"}};
+/// A row of the registry among those of its type: "dielectric-elastomer", or "[nondimensional]" for those told by their
+/// section.
+std::string name_of(const model::Actuator& actuator) {
+    return std::string(actuator.nondimensional ? actuator.sections_in_words : actuator.type);
+}
 
 }  // namespace
 
@@ -119,10 +117,10 @@ std::string quantities_help(std::size_t width) {
         const auto quantity = static_cast<design::Quantity>(i);
         const design::QuantityInfo& info = design::quantity_info(quantity);
         std::string having;
-        for (const Described& each : described) {
-            const auto all = design::reported_quantities(each.family);
+        for (const model::Actuator* each : model::actuators()) {
+            const auto all = design::reported_quantities(*each);
             const bool has = std::find(all.begin(), all.end(), quantity) != all.end();
-            if (has) { having += (having.empty() ? "" : ", ") + std::string(each.name); }
+            if (has) { having += (having.empty() ? "" : ", ") + name_of(*each); }
         }
         block.rows.push_back({std::string(info.name), info.unit == "1" ? "-" : std::string(info.unit),
                               std::string(info.meaning), having});

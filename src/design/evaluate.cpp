@@ -1,10 +1,10 @@
 #include "design/evaluate.hpp"
 
 #include "design/band_quantities.hpp"
+#include "design/integrators.hpp"
 #include "design/judge.hpp"
 #include "design/measure.hpp"
 #include "design/operating_point.hpp"
-#include "design/scene.hpp"
 #include "orbit/polish.hpp"
 
 #include <cmath>
@@ -18,12 +18,12 @@ using model::Specification;
 
 struct Evaluator::Implementation {
     Problem problem;
-    Scene scene;
+    Integrators scene;
 
     explicit Implementation(Problem p) : problem(std::move(p)) {
         model::validate(problem.actuator);
         const auto check = [&](Quantity q) {
-            const std::string_view why = unavailable(q, problem.actuator.family);
+            const std::string_view why = unavailable(q, *problem.actuator.type);
             if (!why.empty()) {
                 throw std::invalid_argument(std::string(quantity_info(q).name) + " " + std::string(why));
             }
@@ -33,7 +33,7 @@ struct Evaluator::Implementation {
         if (!(problem.margin >= 0.0 && problem.margin < 0.5)) {
             throw std::invalid_argument("drive.margin: allowed is 0 % to 50 %");
         }
-        scene = make_scene(problem);
+        scene = make_integrators(problem);
     }
 };
 
@@ -42,7 +42,8 @@ namespace {
 /// One design on its way through the stages of an evaluation.
 class DesignEvaluation {
 public:
-    DesignEvaluation(const Problem& problem, const Scene& scene, const Specification& actuator, const Demand& demand)
+    DesignEvaluation(const Problem& problem, const Integrators& scene, const Specification& actuator,
+                     const Demand& demand)
         : problem_(problem),
           scene_(scene),
           actuator_(actuator),
@@ -123,7 +124,8 @@ private:
     [[nodiscard]] Reached reach(const flow::System& system, const std::optional<std::vector<double>>& start,
                                 int period) const {
         if (start) {
-            return reach_by_newton(system, from_user(*start, "orbit.start", scaled_.scales, system.states()), period);
+            return reach_by_newton(
+                system, from_user(*start, "orbit.start", *actuator_.type, scaled_.scales, system.states()), period);
         }
         Reached reached = reach_from_rest(system, period);
         if (reached.orbit.ok()) { reached.orbit = orbit::start_with_longest_flight(system, reached.orbit); }
@@ -252,7 +254,7 @@ private:
     }
 
     const Problem& problem_;
-    const Scene& scene_;
+    const Integrators& scene_;
     const Specification& actuator_;
     const Demand& demand_;
     model::Scaled scaled_;

@@ -17,7 +17,7 @@ Specification with_value(Specification spec, Key key, double value) {
 }
 
 void require_key(const Specification& spec, Key key) {
-    const auto keys = model::keys_of(spec.family);
+    const auto keys = spec.type->keys;
     if (std::find(keys.begin(), keys.end(), key) == keys.end() || !spec.has(key)) {
         throw std::invalid_argument(std::string(model::key_info(key).name) +
                                     " is not a key of this problem: it cannot be varied");
@@ -25,8 +25,6 @@ void require_key(const Specification& spec, Key key) {
 }
 
 }  // namespace
-
-bool is_drive_frequency(Key key) { return key == Key::drive_frequency || key == Key::nd_omega || key == Key::sm_omega; }
 
 double motion_size(const flow::System& system) {
     return std::max(system.stop_position() - system.integrator->centre(system.parameters), 1e-3);

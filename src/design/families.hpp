@@ -7,9 +7,6 @@
 
 namespace percuss::design {
 
-/// Whether a key sets the drive frequency.
-bool is_drive_frequency(model::Key key);
-
 /// What counts as order one in the displacement of motions that reach the stop: the gap.
 double motion_size(const flow::System& system);
 

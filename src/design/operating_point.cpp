@@ -1,6 +1,6 @@
 #include "design/operating_point.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "design/sampled_check.hpp"
 
 #include "attractor/ensemble.hpp"
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "model/number_text.hpp"
 
 namespace percuss::design {

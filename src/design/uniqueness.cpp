@@ -1,6 +1,6 @@
 #include "design/uniqueness.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "orbit/polish.hpp"
 
 #include <algorithm>

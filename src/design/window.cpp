@@ -3,7 +3,7 @@
 #include "boundary/critical.hpp"
 #include "branch/trace.hpp"
 #include "design/families.hpp"
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "orbit/polish.hpp"
 
 #include <algorithm>
@@ -157,7 +157,7 @@ Intruder find_window(const Evaluator& evaluator, const Specification& design, do
     const model::Scales scales = model::scale(design).scales;
     for (const Attractor& attractor : attractors) {
         if (attractor.period < 1) { continue; }
-        const flow::State state = from_user(attractor.state, "attractor", scales, system.states());
+        const flow::State state = from_user(attractor.state, "attractor", *design.type, scales, system.states());
         const orbit::Orbit polished = orbit::polish_orbit(system, state, attractor.period);
         if (!polished.ok()) {
             intruder.trouble = "the motion that refutes it could not be polished";

@@ -13,82 +13,47 @@ namespace percuss::problem {
 
 namespace {
 
-using model::Family;
 using model::Key;
 
-constexpr std::string_view dielectric_name = "dielectric-elastomer";
-constexpr std::string_view spring_name = "spring-mass";
-
-std::string_view describe(Family family) {
-    switch (family) {
-        case Family::dielectric_elastomer_si: return "a dielectric elastomer problem in SI units";
-        case Family::dielectric_elastomer_nondimensional: return "a [nondimensional] problem";
-        case Family::spring_mass: return "a spring-mass problem";
-    }
-    return "a problem of unknown kind";
-}
-
-/// Keys that mean the same in different kinds of problem.
-constexpr std::array<std::array<Key, 3>, 6> counterparts = {{
-    {Key::stop_gap, Key::nd_gap, Key::stop_gap},
-    {Key::stop_stiffness, Key::nd_stiffness, Key::stop_stiffness},
-    {Key::stop_damping, Key::nd_damping, Key::stop_damping},
-    {Key::drive_voltage, Key::nd_voltage, Key::sm_force},
-    {Key::drive_frequency, Key::nd_omega, Key::sm_omega},
-    {Key::layers, Key::nd_layers, Key::sm_force},
-}};
-
-std::string counterpart_hint(Key key, Family family) {
-    const std::size_t column = static_cast<std::size_t>(family);
-    for (const auto& row : counterparts) {
-        const bool listed = std::find(row.begin(), row.end(), key) != row.end();
-        const bool sensible = !(row[0] == Key::layers && family == Family::spring_mass);
-        if (listed && sensible && row.at(column) != key) {
-            return "; use " + std::string(model::key_info(row.at(column)).name);
-        }
-    }
-    return "";
-}
-
-bool belongs(Key key, Family family) {
-    const auto keys = model::keys_of(family);
-    return std::find(keys.begin(), keys.end(), key) != keys.end();
+std::string counterpart_hint(Key key, const model::Actuator& actuator) {
+    const auto own = model::counterpart(key, actuator);
+    return own ? "; use " + std::string(model::key_info(*own).name) : "";
 }
 
 void read_key(const Setting& setting, Key key, model::Specification& spec) {
-    if (!belongs(key, spec.family)) {
-        throw ProblemError(as_written(setting) + ": this is " + std::string(describe(spec.family)) +
-                           ", which has no such key" + counterpart_hint(key, spec.family));
+    if (!model::belongs(key, *spec.type)) {
+        throw ProblemError(as_written(setting) + ": this is " + std::string(spec.type->kind) +
+                           ", which has no such key" + counterpart_hint(key, *spec.type));
     }
-    if (is_frequency(key) && model::trimmed(setting.value) == "edge") {
+    if (model::is_frequency(key) && model::trimmed(setting.value) == "edge") {
         return;  // absent means edge
     }
     try {
         spec.set(key, parse_key_value(key, setting.value));
     } catch (const std::invalid_argument& error) {
         throw ProblemError((setting.from_option ? "option --" : "") + setting.key + ": " + error.what() +
-                           (is_frequency(key) ? ", or edge" : ""));
+                           (model::is_frequency(key) ? ", or edge" : ""));
     }
 }
 
 /// The other way to give the frequency is in use.
 bool is_replaced(const model::Specification& spec, Key key) {
-    return is_frequency(key) && !spec.has(key) && model::has_frequency(spec);
+    return model::is_frequency(key) && !spec.has(key) && model::has_frequency(spec);
 }
 
 std::vector<Echo> key_echo(const model::Specification& spec, Key key) {
-    if (!belongs(key, spec.family) || is_replaced(spec, key)) { return {}; }
+    if (!model::belongs(key, *spec.type) || is_replaced(spec, key)) { return {}; }
     if (spec.has(key)) { return {number_echo(spec.value(key), model::key_info(key).unit)}; }
-    const auto keys = model::keys_of(spec.family);
-    const bool usual_frequency = is_frequency(key) && std::find_if(keys.begin(), keys.end(), is_frequency)[0] == key;
-    if (usual_frequency) { return {{"edge"}}; }
-    if (!is_frequency(key) && model::is_required(spec, key)) { return {{""}}; }
+    if (model::is_frequency(key)) {  // of several ways to give it the usual one says edge
+        return key == model::frequency_key(spec) ? std::vector<Echo>{{"edge"}} : std::vector<Echo>{};
+    }
+    if (model::is_required(spec, key)) { return {{""}}; }
     return {};
 }
 
 Row key_row(Key key) {
     const model::KeyInfo& info = model::key_info(key);
-    const std::string edge = is_frequency(key) ? "edge" : "";
+    const std::string edge = model::is_frequency(key) ? "edge" : "";
     return setting<design::Problem>(
         std::string(info.name), info.unit == "1" ? "" : std::string(info.unit),
         allowed_range(info) + (edge.empty() ? "" : ", or edge"),
@@ -97,16 +62,34 @@ Row key_row(Key key) {
         [key](const design::Problem& problem, const Context&) { return key_echo(problem.actuator, key); });
 }
 
-const Words<model::StopLaw>& stop_laws() {
-    static const Words<model::StopLaw> laws = {{"kelvin-voigt", model::StopLaw::kelvin_voigt},
-                                               {"no-tension", model::StopLaw::no_tension},
-                                               {"none", model::StopLaw::none}};
-    return laws;
+/// Every law that the table of contact laws knows.
+const Words<model::ContactLaw>& contact_laws() {
+    static const Words<model::ContactLaw> words = [] {
+        Words<model::ContactLaw> list;
+        for (const model::ContactLaw law : model::contact_laws) { list.emplace_back(model::to_string(law), law); }
+        return list;
+    }();
+    return words;
 }
 
-}  // namespace
+/// What the rows of the registry say of themselves, told once each: "a, b or c" with `comma` ", " and `last` " or ".
+std::string choices(std::string_view model::Actuator::*words, std::string_view comma, std::string_view last) {
+    std::vector<std::string_view> list;
+    for (const model::Actuator* row : model::actuators()) {
+        const std::string_view text = row->*words;
+        if (std::find(list.begin(), list.end(), text) == list.end()) { list.push_back(text); }
+    }
+    std::string out;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        if (i > 0) { out += i + 1 == list.size() ? last : comma; }
+        out += list[i];
+    }
+    return out;
+}
 
-bool is_frequency(Key key) { return key == Key::drive_frequency || key == Key::nd_omega || key == Key::sm_omega; }
+std::string sections_to_give() { return choices(&model::Actuator::sections_in_words, ", or ", ", or "); }
+
+}  // namespace
 
 double parse_key_value(Key key, std::string_view text) {
     const model::KeyInfo& info = model::key_info(key);
@@ -123,68 +106,66 @@ double parse_key_value(Key key, std::string_view text) {
     return model::parse_quantity(text, info.unit);
 }
 
-model::Key parse_key(std::string_view name, Family family) {
+model::Key parse_key(std::string_view name, const model::Actuator& family) {
     std::vector<std::string> names;
-    for (const Key key : model::keys_of(family)) {
+    for (const Key key : family.keys) {
         if (model::key_info(key).name == name) { return key; }
         names.emplace_back(model::key_info(key).name);
     }
-    throw ProblemError("'" + std::string(name) + "' is not a key of " + std::string(describe(family)) +
+    throw ProblemError("'" + std::string(name) + "' is not a key of " + std::string(family.kind) +
                        "; the nearest one is " + nearest_name(name, names));
 }
 
-Family family_of(const SettingList& settings) {
+const model::Actuator& family_of(const SettingList& settings) {
     const Setting* type = settings.find("actuator.type");
     const std::string_view type_name = type == nullptr ? "" : model::trimmed(type->value);
-    if (type != nullptr && type_name != dielectric_name && type_name != spring_name) {
-        throw bad_value(*type, "must be dielectric-elastomer or spring-mass");
+    const auto rows = model::actuators();
+    const auto is_named = [&](const model::Actuator* row) { return row->type == type_name; };
+    if (type != nullptr && std::none_of(rows.begin(), rows.end(), is_named)) {
+        throw bad_value(*type, "must be " + choices(&model::Actuator::type, ", ", " or "));
     }
-    const Setting* nondimensional = settings.first_of_section("nondimensional.");
-    const Setting* spring = settings.first_of_section("spring-mass.");
-    const Setting* material = settings.first_of_section("material.");
-    const Setting* geometry = nullptr;
-    for (const Setting& setting : settings.all()) {
-        if (setting.key.starts_with("actuator.") && setting.key != "actuator.type" && geometry == nullptr) {
-            geometry = &setting;
+    // The first setting of a row's own sections, where there is one.
+    const auto evidence = [&](const model::Actuator& row) -> const Setting* {
+        for (const std::string_view section : row.sections) {
+            for (const Setting& setting : settings.all()) {
+                if (setting.key.starts_with(section) && setting.key != "actuator.type") { return &setting; }
+            }
         }
-    }
-    const Setting* si = geometry != nullptr ? geometry : material;
-
-    const std::array<std::pair<const Setting*, const Setting*>, 3> mixtures = {
-        {{nondimensional, si}, {nondimensional, spring}, {spring, si}}};
-    for (const auto& [one, other] : mixtures) {
-        if (one != nullptr && other != nullptr) {
-            throw ProblemError(as_written(*one) + " and " + as_written(*other) +
-                               " belong to different kinds of problem: give [nondimensional], or [actuator] and "
-                               "[material], or [spring-mass]");
+        return nullptr;
+    };
+    const model::Actuator* described = nullptr;
+    for (const model::Actuator* row : rows) {
+        const Setting* found = evidence(*row);
+        if (found == nullptr) { continue; }
+        if (described != nullptr) {
+            throw ProblemError(as_written(*evidence(*described)) + " and " + as_written(*found) +
+                               " belong to different kinds of problem: give " + sections_to_give());
         }
+        described = row;
     }
-    if (type_name == spring_name && (nondimensional != nullptr || si != nullptr)) {
-        throw bad_value(*type, "does not go with " + as_written(*(nondimensional != nullptr ? nondimensional : si)));
+    if (described != nullptr && type != nullptr && described->type != type_name) {
+        throw bad_value(*type, "does not go with " + as_written(*evidence(*described)));
     }
-    if (type_name == dielectric_name && spring != nullptr) {
-        throw bad_value(*type, "does not go with " + as_written(*spring));
+    if (described != nullptr) { return *described; }
+    for (const model::Actuator* row : rows) {
+        if (row->follows_type && row->type == type_name) { return *row; }
     }
-    if (nondimensional != nullptr) { return Family::dielectric_elastomer_nondimensional; }
-    if (spring != nullptr || type_name == spring_name) { return Family::spring_mass; }
-    if (si != nullptr || type_name == dielectric_name) { return Family::dielectric_elastomer_si; }
-    throw ProblemError("no actuator is described: give [nondimensional], or [actuator] and [material], or "
-                       "[spring-mass]");
+    throw ProblemError("no actuator is described: give " + sections_to_give());
 }
 
 std::string text_of(Key key, double value) { return model::format_quantity(value, model::key_info(key).unit); }
 
 Section actuator_section() {
     std::vector<Row> rows = {setting<design::Problem>(
-        "actuator.type", "", "dielectric-elastomer | spring-mass", "told by the sections present", "kind of actuator",
+        "actuator.type", "", choices(&model::Actuator::type, " | ", " | "), "told by the sections present",
+        "kind of actuator",
         [](design::Problem&, const Setting&, const Context&) {},  // read before all else, by family_of
         [](const design::Problem& problem, const Context&) {
-            const bool is_spring = problem.actuator.family == Family::spring_mass;
-            return std::vector<Echo>{{std::string(is_spring ? spring_name : dielectric_name)}};
+            return std::vector<Echo>{{std::string(problem.actuator.type->type)}};
         })};
-    for (std::size_t i = 0; i < model::key_count; ++i) { rows.push_back(key_row(static_cast<Key>(i))); }
-    rows.push_back(choice<design::Problem, model::StopLaw>(
-        "stop.law", [](auto& problem) -> auto& { return problem.actuator.law; }, stop_laws(),
+    for (const Key key : model::all_keys()) { rows.push_back(key_row(key)); }
+    rows.push_back(choice<design::Problem, model::ContactLaw>(
+        "stop.law", [](auto& problem) -> auto& { return problem.actuator.law; }, contact_laws(),
         "force law of the stop; none: there is no stop"));
     rows.push_back(setting<design::Problem>(
         "drive.margin", "", margin_range, model::number_text(design::Problem().margin),

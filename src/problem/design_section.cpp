@@ -15,11 +15,6 @@ namespace {
 using design::Quantity;
 using model::trimmed;
 
-bool is_stop_key(model::Key key) {
-    return key == model::Key::stop_gap || key == model::Key::stop_stiffness || key == model::Key::stop_damping ||
-           key == model::Key::nd_gap || key == model::Key::nd_stiffness || key == model::Key::nd_damping;
-}
-
 /// Removes `word` from the end of `text` if it stands there by itself.
 bool take_last_word(std::string_view& text, std::string_view word) {
     if (!text.ends_with(word)) { return false; }
@@ -62,7 +57,7 @@ void refuse_half_a_unit(const model::KeyInfo& info, std::string_view lower, std:
                                 std::string(info.unit) + ": write " + with_unit(lower) + " .. " + with_unit(upper));
 }
 
-design::DesignVariable parse_variable(const Setting& setting, model::Family family) {
+design::DesignVariable parse_variable(const Setting& setting, const model::Actuator& family) {
     constexpr std::string_view form = "expected KEY in LOWER .. UPPER [log] [integer]";
     const std::string_view text = trimmed(setting.value);
     const auto in = text.find(" in ");
@@ -103,18 +98,18 @@ design::DesignVariable parse_variable(const Setting& setting, model::Family fami
 }
 
 void add_variable(const Setting& setting, design::Problem& problem) {
-    const auto variable = parse_variable(setting, problem.actuator.family);
+    const auto variable = parse_variable(setting, *problem.actuator.type);
     const auto same = [&](const design::DesignVariable& other) { return other.key == variable.key; };
     if (std::any_of(problem.variables.begin(), problem.variables.end(), same)) {
         throw bad_value(setting, "this key is a variable already");
     }
-    if (is_stop_key(variable.key) && problem.actuator.law == model::StopLaw::none) {
+    if (model::is_of_stop(variable.key) && !model::has_stop(problem.actuator.law)) {
         throw bad_value(setting, "stop.law = none: there is no stop to vary");
     }
     problem.variables.push_back(variable);
 }
 
-Quantity parse_quantity_name(const Setting& setting, std::string_view name, model::Family family) {
+Quantity parse_quantity_name(const Setting& setting, std::string_view name, const model::Actuator& family) {
     std::vector<std::string> names;
     for (const Quantity quantity : design::reported_quantities(family)) {
         names.emplace_back(design::quantity_info(quantity).name);
@@ -130,7 +125,7 @@ Quantity parse_quantity_name(const Setting& setting, std::string_view name, mode
 }
 
 void add_objective(const Setting& setting, bool maximise, design::Problem& problem) {
-    const auto quantity = parse_quantity_name(setting, trimmed(setting.value), problem.actuator.family);
+    const auto quantity = parse_quantity_name(setting, trimmed(setting.value), *problem.actuator.type);
     if (!design::quantity_info(quantity).smooth) {
         throw bad_value(setting, "is a whole number and has no gradient: it cannot be an objective");
     }
@@ -141,7 +136,7 @@ void add_objective(const Setting& setting, bool maximise, design::Problem& probl
     problem.objectives.push_back({quantity, maximise});
 }
 
-design::Limit parse_limit(const Setting& setting, model::Family family) {
+design::Limit parse_limit(const Setting& setting, const model::Actuator& family) {
     const std::string_view text = trimmed(setting.value);
     const auto at_most = text.find("<=");
     const auto at_least = text.find(">=");
@@ -155,9 +150,8 @@ design::Limit parse_limit(const Setting& setting, model::Family family) {
     limit.text = text;
     const std::string_view bound = text.substr(position + 2);
     try {
-        limit.bound = family == model::Family::dielectric_elastomer_nondimensional
-                        ? model::parse_plain_number(bound)
-                        : model::parse_quantity(bound, design::quantity_info(limit.quantity).unit);
+        limit.bound = family.nondimensional ? model::parse_plain_number(bound)
+                                            : model::parse_quantity(bound, design::quantity_info(limit.quantity).unit);
     } catch (const std::invalid_argument& error) { throw bad_value(setting, error.what()); }
     return limit;
 }
@@ -227,7 +221,7 @@ std::vector<Echo> variables_echo(const design::Problem& problem) {
 }
 
 std::vector<Echo> limits_echo(const design::Problem& problem) {
-    const bool plain = problem.actuator.family == model::Family::dielectric_elastomer_nondimensional;
+    const bool plain = problem.actuator.type->nondimensional;
     std::vector<Echo> out;
     for (const design::Limit& limit : problem.limits) {
         const std::string_view unit = plain ? "1" : design::quantity_info(limit.quantity).unit;
@@ -266,7 +260,7 @@ Section design_section() {
          list(
              "design.limit", "QUANTITY <= VALUE or QUANTITY >= VALUE", "what a design must respect", limit_subject,
              [](const Setting& s, design::Problem& problem) {
-                 problem.limits.push_back(parse_limit(s, problem.actuator.family));
+                 problem.limits.push_back(parse_limit(s, *problem.actuator.type));
              },
              limits_echo),
          choice<design::Problem, design::SingleStable>(

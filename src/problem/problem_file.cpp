@@ -36,7 +36,7 @@ void check_values(const design::Problem& problem, FrequencyUse use, Troubles& tr
     for (const std::string& violation : model::violations(problem.actuator)) {
         if (!is_known_trouble(troubles, violation)) { troubles.add(violation); }
     }
-    if (use == FrequencyUse::operates && problem.actuator.law == model::StopLaw::none &&
+    if (use == FrequencyUse::operates && !model::has_stop(problem.actuator.law) &&
         !model::has_frequency(problem.actuator) && !is_known_trouble(troubles, "drive.frequency ")) {
         troubles.add("drive.frequency = edge: stop.law = none leaves no edge to operate at, give a frequency");
     }
@@ -69,7 +69,7 @@ ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting>
     problem.name = file.stem().string();
 
     design::Problem& design = problem.design;
-    design.actuator.family = family_of(settings);
+    design.actuator.type = &family_of(settings);
     const Context context{design.actuator};
     for (const Section& section : sections) {
         if (!section.of_problem) { problem.options.emplace(section.options, section.make()); }
@@ -107,6 +107,6 @@ ProblemFile inspect_problem(const std::filesystem::path& file, std::span<const S
     return assemble(file, options, sections, FrequencyUse::operates, true);
 }
 
-int problem_states(const ProblemFile& problem) { return static_cast<int>(states_of(problem.design.actuator.family)); }
+int problem_states(const ProblemFile& problem) { return static_cast<int>(states_of(*problem.design.actuator.type)); }
 
 }  // namespace percuss::problem

@@ -15,10 +15,10 @@ namespace percuss::problem {
 namespace {
 
 /// The rows of a section as they are told: keys of the actuator in the actuator's own order, before the rest.
-std::vector<const Row*> in_told_order(const Section& section, model::Family family) {
+std::vector<const Row*> in_told_order(const Section& section, const model::Actuator& family) {
     std::vector<const Row*> rows;
     for (const Row& row : section.rows) { rows.push_back(&row); }
-    const auto keys = model::keys_of(family);
+    const auto keys = family.keys;
     const auto rank = [&](const Row* row) -> std::ptrdiff_t {
         const auto key = model::find_key(row->name);
         if (!key) { return row->name == "actuator.type" ? -1 : std::ssize(keys); }
@@ -34,7 +34,7 @@ public:
 
     void add(const Section& section) {
         const Context context{problem_.design.actuator};
-        for (const Row* row : in_told_order(section, problem_.design.actuator.family)) {
+        for (const Row* row : in_told_order(section, *problem_.design.actuator.type)) {
             const std::vector<Echo> echoes = row->get(options_of(problem_, section), context);
             for (std::size_t i = 0; i < echoes.size(); ++i) { add(*row, echoes[i], i); }
         }
@@ -123,9 +123,7 @@ std::string_view to_string(Origin origin) {
     return "unknown";
 }
 
-bool is_nondimensional(const design::Problem& problem) {
-    return problem.actuator.family == model::Family::dielectric_elastomer_nondimensional;
-}
+bool is_nondimensional(const design::Problem& problem) { return problem.actuator.type->nondimensional; }
 
 std::string_view units_of(const ProblemFile& problem) {
     return is_nondimensional(problem.design) ? "nondimensional" : "si";

@@ -130,8 +130,7 @@ Row state(std::string name, Field field, std::string fallback, std::string meani
             std::move(fallback),
             std::move(meaning),
             [=](void* options, const Setting& s, const Context& context) {
-                std::invoke(field, *static_cast<Options*>(options)) =
-                    parse_state(s, states_of(context.actuator.family));
+                std::invoke(field, *static_cast<Options*>(options)) = parse_state(s, states_of(*context.actuator.type));
             },
             [=](const void* options, const Context&) {
                 const auto& value = std::invoke(field, *static_cast<const Options*>(options));

@@ -20,16 +20,13 @@ Section uniqueness_section();
 Section solver_section();
 
 /// The kind of problem told by the sections and actuator.type. Throws ProblemError for none and for mixtures.
-model::Family family_of(const SettingList& settings);
+const model::Actuator& family_of(const SettingList& settings);
 
 /// A number for this key: plain for nondimensional keys, else with an optional unit. Throws std::invalid_argument.
 double parse_key_value(model::Key key, std::string_view text);
 
 /// A key of the family by name. Throws ProblemError that names the nearest one.
-model::Key parse_key(std::string_view name, model::Family family);
-
-/// Whether the key is a drive frequency, which may be "edge".
-bool is_frequency(model::Key key);
+model::Key parse_key(std::string_view name, const model::Actuator& family);
 
 /// Value with its unit, for people.
 std::string text_of(model::Key key, double value);

@@ -82,9 +82,6 @@ std::string state_text(const std::vector<double>& state) {
     return text;
 }
 
-std::size_t states_of(model::Family family) {
-    const bool is_spring = model::actuator_kind(family) == model::ActuatorKind::spring_mass;
-    return static_cast<std::size_t>(is_spring ? model::spring::states : model::membrane::states);
-}
+std::size_t states_of(const model::Actuator& family) { return family.states.size(); }
 
 }  // namespace percuss::problem

@@ -37,6 +37,6 @@ std::string alternatives(std::span<const std::string> names);
 std::string state_text(const std::vector<double>& state);
 
 /// Numbers in a state of this family.
-std::size_t states_of(model::Family family);
+std::size_t states_of(const model::Actuator& family);
 
 }  // namespace percuss::problem

@@ -10,8 +10,8 @@ using problem::bad_value;
 using problem::Setting;
 
 Key parse_along(const Setting& setting, const problem::Context& context) {
-    const Key key = problem::parse_key(model::trimmed(setting.value), context.actuator.family);
-    const bool integer = key == Key::layers || key == Key::nd_layers;
+    const Key key = problem::parse_key(model::trimmed(setting.value), *context.actuator.type);
+    const bool integer = model::key_info(key).integer;
     if (integer) { throw bad_value(setting, "layers are whole numbers, nothing can be followed along them"); }
     return key;
 }
@@ -22,7 +22,7 @@ double parse_end(const Setting& setting, Key key) {
         value = problem::parse_key_value(key, setting.value);
     } catch (const std::invalid_argument& error) { throw bad_value(setting, error.what()); }
     const model::KeyInfo& info = model::key_info(key);
-    const bool above = info.lowest_allowed && !problem::is_frequency(key) ? value >= info.lowest : value > info.lowest;
+    const bool above = info.lowest_allowed && !model::is_frequency(key) ? value >= info.lowest : value > info.lowest;
     if (!(above && value <= info.highest)) {
         throw bad_value(setting, std::string(info.name) + " must be " + model::allowed_range(info));
     }

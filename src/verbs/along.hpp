@@ -49,7 +49,7 @@ problem::Row along_row(const std::string& section, const std::string& fallback, 
         section + ".along", "", "a key of the actuator", fallback, meaning,
         [=](Options& options, const Setting& s, const Context& context) {
             const model::Key key = parse_along(s, context);
-            if (!frequency_allowed && is_frequency(key)) {
+            if (!frequency_allowed && model::is_frequency(key)) {
                 throw bad_value(s, "the drive frequency is the other parameter already; give another key");
             }
             options.along = key;

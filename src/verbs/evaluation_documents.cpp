@@ -60,7 +60,7 @@ Json design_of(const DesignValues& values) {
 
 Json quantities_of(const std::array<double, design::quantity_count>& values, const ProblemFile& problem) {
     Json out = Json::object();
-    for (const Quantity quantity : design::reported_quantities(problem.design.actuator.family)) {
+    for (const Quantity quantity : design::reported_quantities(*problem.design.actuator.type)) {
         out[design::quantity_info(quantity).name] = values[static_cast<std::size_t>(quantity)];
     }
     return out;
@@ -100,7 +100,7 @@ Json gradients_of(const Evaluation& evaluation, const ProblemFile& problem, With
         add(name, in_radians_per_second(evaluation, own, d_own));
         add(name + "_nondimensional", d_own);
     };
-    for (const Quantity quantity : design::reported_quantities(problem.design.actuator.family)) {
+    for (const Quantity quantity : design::reported_quantities(*problem.design.actuator.type)) {
         add(design::quantity_info(quantity).name, evaluation.gradients.quantity[static_cast<std::size_t>(quantity)]);
     }
     add_frequency("operating_point.omega", evaluation.operating_point.omega, evaluation.gradients.omega);

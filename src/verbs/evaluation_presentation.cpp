@@ -34,7 +34,7 @@ std::string error_text(const ProblemFile& problem, Quantity quantity, double val
 
 Block quantities_block(const ProblemFile& problem, const Evaluation& evaluation) {
     Block block{"Quantities", "", {"quantity", "value", "error estimate", "meaning"}, {}};
-    for (const Quantity quantity : design::reported_quantities(problem.design.actuator.family)) {
+    for (const Quantity quantity : design::reported_quantities(*problem.design.actuator.type)) {
         const double value = evaluation.value(quantity);
         if (!std::isnan(value)) {
             const double error = evaluation.error_estimates[static_cast<std::size_t>(quantity)];
@@ -72,7 +72,7 @@ Block orbit_block(const ProblemFile& problem, const design::OrbitReport& orbit) 
 }
 
 /// Keys down, quantities across, a few at a time so that lines stay short.
-std::vector<Block> gradient_blocks(const Evaluation& evaluation, model::Family family) {
+std::vector<Block> gradient_blocks(const Evaluation& evaluation, const model::Actuator& family) {
     std::vector<std::pair<std::string, const std::vector<double>*>> all;
     for (const Quantity quantity : design::reported_quantities(family)) {
         all.emplace_back(design::quantity_info(quantity).name,
@@ -138,7 +138,7 @@ void add_evaluation(const ProblemFile& problem, const Evaluation& evaluation, Wi
                                                edge == WithEdge::yes ? PointMembers::all : PointMembers::without_edge));
     out.blocks.push_back(quantities_block(problem, evaluation));
     if (!evaluation.orbit.state.empty()) { out.blocks.push_back(orbit_block(problem, evaluation.orbit)); }
-    for (Block& block : gradient_blocks(evaluation, problem.design.actuator.family)) {
+    for (Block& block : gradient_blocks(evaluation, *problem.design.actuator.type)) {
         out.blocks.push_back(std::move(block));
     }
     out.blocks.push_back(uniqueness_block(evaluation.uniqueness));

@@ -32,7 +32,7 @@ DesignValues design_values(const design::Problem& problem) {
         values.emplace_back(variable.key, problem.actuator.value(variable.key));
     }
     if (values.empty()) {
-        for (const model::Key key : model::keys_of(problem.actuator.family)) {
+        for (const model::Key key : problem.actuator.type->keys) {
             if (problem.actuator.has(key)) { values.emplace_back(key, problem.actuator.value(key)); }
         }
     }
@@ -53,7 +53,7 @@ std::string quantities_csv(const ProblemFile& problem, const DesignValues& desig
         row.add("omega_nondimensional", "", point.omega);
         row.add("edge_omega_nondimensional", "", point.edge_omega);
     }
-    const auto quantities = design::reported_quantities(problem.design.actuator.family);
+    const auto quantities = design::reported_quantities(*problem.design.actuator.type);
     for (const Quantity quantity : quantities) {
         row.add(std::string(design::quantity_info(quantity).name), unit_of(problem, quantity),
                 evaluation.value(quantity));
@@ -78,7 +78,7 @@ std::string gradients_csv(const ProblemFile& problem, const design::Evaluation& 
         for (std::size_t i = 0; i < rows.size(); ++i) { rows[i].push_back(cell(values[i])); }
     };
     if (!rows.empty()) {
-        for (const Quantity quantity : design::reported_quantities(problem.design.actuator.family)) {
+        for (const Quantity quantity : design::reported_quantities(*problem.design.actuator.type)) {
             add(std::string(design::quantity_info(quantity).name), unit_of(problem, quantity),
                 evaluation.gradients.quantity[static_cast<std::size_t>(quantity)]);
         }

@@ -1,7 +1,7 @@
 #include "verbs/attractors/attractors.hpp"
 
+#include "design/integrators.hpp"
 #include "design/operating_point.hpp"
-#include "design/scene.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -21,7 +21,7 @@ public:
     Run(const StudyProblem& problem, const AttractorsOptions& study)
         : problem_(problem),
           study_(study),
-          scene_(design::make_scene(problem.design)),
+          scene_(design::make_integrators(problem.design)),
           scaled_(model::scale(problem.design.actuator)),
           exact_{scene_.own.get(), scaled_.parameters, &cost_},
           scout_{scene_.scout.get(), scaled_.parameters, &cost_} {}
@@ -93,7 +93,7 @@ private:
     /// A membrane without Maxwell branches moves in x and x' alone; stretches given are then of no use.
     [[nodiscard]] flow::State corner(std::vector<double> given, std::string_view key) const {
         given.resize(std::min(given.size(), static_cast<std::size_t>(exact_.states())));
-        return design::from_user(given, key, scaled_.scales, exact_.states());
+        return design::from_user(given, key, *problem_.design.actuator.type, scaled_.scales, exact_.states());
     }
 
     void report(const Ensemble& ensemble) {
@@ -141,7 +141,7 @@ private:
 
     const StudyProblem& problem_;
     const AttractorsOptions& study_;
-    design::Scene scene_;
+    design::Integrators scene_;
     model::Scaled scaled_;
     flow::Cost cost_;
     flow::System exact_, scout_;

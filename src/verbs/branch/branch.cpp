@@ -4,8 +4,8 @@
 #include "branch/switching.hpp"
 #include "branch/trace.hpp"
 #include "design/families.hpp"
+#include "design/integrators.hpp"
 #include "design/operating_point.hpp"
-#include "design/scene.hpp"
 #include "orbit/polish.hpp"
 #include "verbs/branch/branch_setup.hpp"
 #include "verbs/evaluate/evaluate.hpp"
@@ -125,7 +125,7 @@ private:
     void differentiate() {
         result_.gradient_keys = gradient_keys(setup_.problem.design);
         std::erase_if(result_.gradient_keys, [&](model::Key key) {
-            return key == setup_.along || (setup_.along_frequency && design::is_drive_frequency(key));
+            return key == setup_.along || (setup_.along_frequency && model::is_frequency(key));
         });
         for (const Branch& b : result_.branches) {
             auto& gradients = result_.gradients.emplace_back();

@@ -22,25 +22,13 @@ using std::numbers::pi;
 constexpr double default_from = 3.0;
 constexpr double default_to = 0.6;
 
-double unit_in_user(Key key, const model::Scales& scales) {
-    if (key == Key::nd_omega) { return 1.0; }
-    const double per_radian = key == Key::sm_omega ? 1.0 : 1.0 / (2.0 * pi);
-    return per_radian / scales.time;
-}
+double unit_in_user(Key key, const model::Scales& scales) { return model::per_radian(key) / scales.time; }
 
 }  // namespace
 
-Key frequency_key(const Specification& spec) {
-    switch (spec.family) {
-        case model::Family::dielectric_elastomer_nondimensional: return Key::nd_omega;
-        case model::Family::spring_mass: return spec.has(Key::sm_omega) ? Key::sm_omega : Key::drive_frequency;
-        default: return Key::drive_frequency;
-    }
-}
-
 BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study)
     : problem(p),
-      scene(design::make_scene(p.design)),
+      scene(design::make_integrators(p.design)),
       specification(p.design.actuator) {
     model::validate(specification);
     const model::Scaled scaled = model::scale(specification);
@@ -48,10 +36,10 @@ BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study)
     system = {scene.own.get(), scaled.parameters, &cost};
     omega_index = static_cast<std::size_t>(system.integrator->info().omega);
     const double resonance = system.integrator->linear_resonance(system.parameters);
-    const Key frequency = frequency_key(specification);
+    const Key frequency = model::frequency_key(specification);
     along = study.along.value_or(frequency);
-    along_frequency = design::is_drive_frequency(along);
-    const bool has_stop = specification.law != model::StopLaw::none;
+    along_frequency = model::is_frequency(along);
+    const bool has_stop = model::has_stop(specification.law);
     if (!model::has_frequency(specification) && !along_frequency) {
         // The frequency of the operating point is held.
         flow::System looser = system;
@@ -90,9 +78,11 @@ BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study)
     size = has_stop ? design::motion_size(system) : 1.0;
 }
 
-double BranchSetup::to_omega(double user) const { return user / unit_in_user(frequency_key(specification), scales); }
+double BranchSetup::to_omega(double user) const {
+    return user / unit_in_user(model::frequency_key(specification), scales);
+}
 double BranchSetup::from_omega(double omega) const {
-    return omega * unit_in_user(frequency_key(specification), scales);
+    return omega * unit_in_user(model::frequency_key(specification), scales);
 }
 
 std::optional<branch::Departure> BranchSetup::departure() const {

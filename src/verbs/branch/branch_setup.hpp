@@ -3,7 +3,7 @@
 /// What the studies `branch` and `locus` start from: the system, its family of parameters, the range, a first motion.
 
 #include "branch/trace.hpp"
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "flow/parameter_family.hpp"
 #include "verbs/branch/branch.hpp"
 
@@ -24,7 +24,7 @@ struct BranchSetup {
     [[nodiscard]] double from_omega(double omega) const;
 
     const StudyProblem& problem;
-    design::Scene scene;
+    design::Integrators scene;
     model::Specification specification;  ///< with a drive frequency
     model::Scales scales;
     flow::Cost cost;
@@ -49,8 +49,5 @@ struct FoundMotion {
 };
 std::vector<FoundMotion> find_motions_along(const BranchSetup& setup, const BranchOptions& study, double low,
                                             double high, const Observer& observer, const StopRequest& stop);
-
-/// The key that sets the drive frequency in this problem.
-model::Key frequency_key(const model::Specification& spec);
 
 }  // namespace percuss::verbs

@@ -13,7 +13,7 @@ namespace {
 
 /// Both ends of the range, unless it is one of drive frequencies, which has defaults.
 void require_range(const BranchOptions& options) {
-    if (!options.along || design::is_drive_frequency(*options.along) || (options.from && options.to)) { return; }
+    if (!options.along || model::is_frequency(*options.along) || (options.from && options.to)) { return; }
     throw problem::ProblemError(std::string(options.from ? "branch.to" : "branch.from") +
                                 " is missing: give both ends of the range of " +
                                 std::string(model::key_info(*options.along).name));
@@ -35,7 +35,7 @@ Outcome run(Session& session) {
 }
 
 std::optional<model::Key> key_of(const BranchOptions& options, const problem::Context& context) {
-    return options.along.value_or(frequency_key(context.actuator));
+    return options.along.value_or(model::frequency_key(context.actuator));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "verbs/check/derived_parameters.hpp"
 
-#include <span>
-#include <string_view>
+#include <string>
 
 namespace percuss::verbs {
 
@@ -9,22 +8,22 @@ std::vector<DerivedParameter> derived_parameters(const problem::ProblemFile& pro
     if (!problem.troubles.empty()) { return {}; }
     const model::Specification& spec = problem.design.actuator;
     const model::Scaled scaled = model::scale(spec);
-    const bool is_spring = model::actuator_kind(spec.family) == model::ActuatorKind::spring_mass;
+    const model::Actuator& actuator = *spec.type;
 
     std::vector<DerivedParameter> out;
-    if (spec.family != model::Family::dielectric_elastomer_nondimensional) {
+    if (!actuator.nondimensional) {
         out.push_back({"length_unit", scaled.scales.length, "m", "one nondimensional length"});
         out.push_back({"time_unit", scaled.scales.time, "s", "one nondimensional time, Gamma"});
         out.push_back({"force_unit", scaled.scales.force, "N", "one nondimensional force"});
     }
-    const std::span<const std::string_view> names = is_spring
-                                                      ? std::span<const std::string_view>(model::spring::names)
-                                                      : std::span<const std::string_view>(model::membrane::names);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const bool at_edge = names[i] == "omega" && !model::has_frequency(spec);
-        const bool of_stop = names[i] == "g" || names[i] == "gap" || names[i] == "k" || names[i] == "delta_i";
-        if (!at_edge && !(of_stop && spec.law == model::StopLaw::none)) {
-            out.push_back({std::string(names[i]), scaled.parameters.at(i), "", "nondimensional parameter"});
+    const model::ParameterRoles& roles = actuator.roles;
+    for (std::size_t i = 0; i < actuator.parameters.size(); ++i) {
+        const int index = static_cast<int>(i);
+        const bool at_edge = index == roles.omega && !model::has_frequency(spec);
+        const bool of_stop = index == roles.gap || index == roles.stop_stiffness || index == roles.stop_damping;
+        if (!at_edge && !(of_stop && !model::has_stop(spec.law))) {
+            out.push_back(
+                {std::string(actuator.parameters[i]), scaled.parameters.at(i), "", "nondimensional parameter"});
         }
     }
     return out;

@@ -23,14 +23,14 @@ std::vector<model::Key> gradient_keys(const design::Problem& problem) {
     for (const design::DesignVariable& variable : problem.variables) { keys.push_back(variable.key); }
     if (!keys.empty()) { return keys; }
     const model::Specification& spec = problem.actuator;
-    for (model::Key key : model::keys_of(spec.family)) {
+    for (model::Key key : spec.type->keys) {
         if (spec.has(key)) { keys.push_back(key); }
     }
     return keys;
 }
 
 std::vector<design::Quantity> quantities_to_report(const design::Problem& problem) {
-    const auto all = design::reported_quantities(problem.actuator.family);
+    const auto all = design::reported_quantities(*problem.actuator.type);
     std::vector<design::Quantity> quantities(all.begin(), all.end());
     bool with_band = problem.single_stable > design::SingleStable::orbit;
     const auto is_band = [](design::Quantity q) {

@@ -50,7 +50,7 @@ LocusResult run_locus(const StudyProblem& problem, const LocusOptions& study, co
                                     "frequency, as in --along nondimensional.phi_pp");
     }
     if (!study.from || !study.to) { throw std::invalid_argument("locus.from and locus.to: give the range of the key"); }
-    if (design::is_drive_frequency(*study.along)) {
+    if (model::is_frequency(*study.along)) {
         throw std::invalid_argument("locus.along = " + std::string(model::key_info(*study.along).name) +
                                     ": the drive frequency is the other parameter already; give another key");
     }

@@ -1,6 +1,6 @@
 #include "verbs/locus/locus_results.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "model/number_text.hpp"
 #include "results/csv_table.hpp"
 #include "results/json.hpp"

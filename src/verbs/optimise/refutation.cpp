@@ -1,6 +1,6 @@
 #include "verbs/optimise/refutation.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 
 #include <cmath>
 #include <memory>

@@ -7,7 +7,6 @@ namespace percuss::verbs {
 
 namespace {
 
-using model::Family;
 using model::trimmed;
 using problem::bad_value;
 using problem::ProblemError;
@@ -15,11 +14,9 @@ using problem::Setting;
 
 constexpr double largest_share = 10.0;
 
-std::string_view drive_word(Family family) { return family == Family::spring_mass ? "force" : "voltage"; }
-
-ProblemError bad_kick(const Setting& setting, Family family, const std::string& why) {
-    const std::string drive(drive_word(family));
-    const std::string unit = family == Family::dielectric_elastomer_nondimensional ? "" : " m/s";
+ProblemError bad_kick(const Setting& setting, const model::Actuator& family, const std::string& why) {
+    const std::string drive(family.drive_word);
+    const std::string unit = family.nondimensional ? "" : " m/s";
     return bad_value(setting, why + "; allowed are 'velocity VALUE at cycle N' and '" + drive +
                                   " SHARE for N cycles at cycle N', as in 'velocity 0.05" + unit +
                                   " at cycle 50' and '" + drive + " 50 % for 1 cycle at cycle 50'");
@@ -47,7 +44,7 @@ std::string with_single_blanks(std::string_view text) {
 
 class KickParser {
 public:
-    KickParser(const Setting& setting, Family family) : setting_(setting), family_(family) {}
+    KickParser(const Setting& setting, const model::Actuator& family) : setting_(setting), family_(family) {}
 
     [[nodiscard]] Kick parse() const {
         const std::string text = with_single_blanks(setting_.value);
@@ -60,7 +57,7 @@ public:
         const std::string_view rest = trimmed(what.substr(word.size()));
         if (word == "velocity") {
             kick.velocity = velocity(rest);
-        } else if (word == drive_word(family_)) {
+        } else if (word == family_.drive_word) {
             kick.kind = Kick::Kind::drive;
             read_drive(rest, kick);
         } else {
@@ -83,8 +80,7 @@ private:
 
     [[nodiscard]] double velocity(std::string_view text) const {
         try {
-            return family_ == Family::dielectric_elastomer_nondimensional ? model::parse_plain_number(text)
-                                                                          : model::parse_quantity(text, "m/s");
+            return family_.nondimensional ? model::parse_plain_number(text) : model::parse_quantity(text, "m/s");
         } catch (const std::invalid_argument& error) { throw trouble(std::string("velocity: ") + error.what()); }
     }
 
@@ -109,20 +105,20 @@ private:
     }
 
     const Setting& setting_;
-    Family family_;
+    const model::Actuator& family_;
 };
 
 }  // namespace
 
-Kick parse_kick(const Setting& setting, Family family) { return KickParser(setting, family).parse(); }
+Kick parse_kick(const Setting& setting, const model::Actuator& family) { return KickParser(setting, family).parse(); }
 
-std::string kick_text(const Kick& kick, Family family) {
+std::string kick_text(const Kick& kick, const model::Actuator& family) {
     const std::string at = " at cycle " + model::exact_text(kick.at);
     if (kick.kind == Kick::Kind::velocity) {
-        const bool plain = family == Family::dielectric_elastomer_nondimensional;
+        const bool plain = family.nondimensional;
         return "velocity " + model::exact_text(kick.velocity) + (plain ? "" : " m/s") + at;
     }
-    return std::string(drive_word(family)) + " " + model::exact_text(kick.share) + " for " +
+    return std::string(family.drive_word) + " " + model::exact_text(kick.share) + " for " +
            model::exact_text(kick.duration) + (kick.duration == 1.0 ? " cycle" : " cycles") + at;
 }
 

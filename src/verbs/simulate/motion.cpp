@@ -1,6 +1,6 @@
 #include "verbs/simulate/motion.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "orbit/polish.hpp"
 
 namespace percuss::verbs {

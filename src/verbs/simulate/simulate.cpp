@@ -1,8 +1,8 @@
 #include "verbs/simulate/simulate.hpp"
 
 #include "design/evaluate.hpp"
+#include "design/integrators.hpp"
 #include "design/operating_point.hpp"
-#include "design/scene.hpp"
 #include "orbit/polish.hpp"
 #include "verbs/simulate/time_series.hpp"
 
@@ -21,7 +21,7 @@ using std::numbers::pi;
 /// The actuator at its operating point, at the start of the series.
 struct Scenario {
     model::Scaled scaled;
-    design::Scene scene;
+    design::Integrators scene;
     flow::Cost cost;
     flow::System system;
     flow::State start{};
@@ -61,15 +61,16 @@ std::optional<flow::State> orbit_at_zero(const StudyProblem& problem, const Simu
                                          SimulateResult& result) {
     orbit::Orbit found;
     if (study.orbit_start) {
-        const flow::State guess =
-            design::from_user(*study.orbit_start, "orbit.start", at.scaled.scales, at.system.states());
+        const flow::State guess = design::from_user(*study.orbit_start, "orbit.start", *problem.design.actuator.type,
+                                                    at.scaled.scales, at.system.states());
         found = orbit::polish_orbit(at.system, guess, study.orbit_period);
         result.reason = "no orbit to start on: Newton's method from orbit.start did not converge";
     } else if (result.operating_point.edge_kind == design::EdgeKind::given) {
         const design::Evaluator evaluator(problem.design);
         const auto orbit = evaluator.orbit(problem.design.actuator, std::nullopt, study.orbit_period, {}).orbit;
         if (!orbit.state.empty()) {
-            return design::from_user(orbit.state, "orbit", at.scaled.scales, at.system.states());
+            return design::from_user(orbit.state, "orbit", *problem.design.actuator.type, at.scaled.scales,
+                                     at.system.states());
         }
         result.reason = "no orbit to start on: the motion from rest does not settle on one of " +
                         std::to_string(study.orbit_period) + " drive cycles";
@@ -94,7 +95,8 @@ bool choose_start(const StudyProblem& problem, const SimulateOptions& study, Sce
     switch (study.from) {
         case SimulationStart::rest: start = at.system.integrator->rest_state(at.system.parameters); break;
         case SimulationStart::state:
-            start = design::from_user(study.start, "simulate.start", at.scaled.scales, at.system.states());
+            start = design::from_user(study.start, "simulate.start", *problem.design.actuator.type, at.scaled.scales,
+                                      at.system.states());
             break;
         case SimulationStart::orbit: start = orbit_at_zero(problem, study, at, result); break;
     }
@@ -294,7 +296,7 @@ SimulateResult run_simulate(const StudyProblem& problem, const SimulateOptions& 
     const auto begun = std::chrono::steady_clock::now();
     check(study);
     SimulateResult result;
-    Scenario at{model::scale(problem.design.actuator), design::make_scene(problem.design), {}, {}, {}, {}};
+    Scenario at{model::scale(problem.design.actuator), design::make_integrators(problem.design), {}, {}, {}, {}};
     at.system = {at.scene.own.get(), at.scaled.parameters, &at.cost};
     simulate(problem, study, at, series, contacts, observer, stop, result);
     result.periods = at.cost.periods();

@@ -35,7 +35,7 @@ std::string_view start_of(SimulationStart start) {
 
 const SimulateOptions& options_of(const ProblemFile& problem) { return problem.get<SimulateOptions>(); }
 
-model::Family family_of(const ProblemFile& problem) { return problem.design.actuator.family; }
+const model::Actuator& family_of(const ProblemFile& problem) { return *problem.design.actuator.type; }
 
 Json kick_of(const ProblemFile& problem) {
     if (!options_of(problem).kick) { return nullptr; }

@@ -10,12 +10,6 @@ namespace {
 
 using std::numbers::pi;
 
-std::size_t drive_index(const model::Specification& spec) {
-    return model::actuator_kind(spec.family) == model::ActuatorKind::spring_mass
-             ? static_cast<std::size_t>(model::spring::force)
-             : static_cast<std::size_t>(model::membrane::voltage);
-}
-
 double phase_of(double position) { return 2.0 * pi * (position - std::floor(position)); }
 
 }  // namespace
@@ -33,20 +27,16 @@ TimeSeries::TimeSeries(const flow::System& system, const model::Specification& s
 }
 
 void TimeSeries::write_headers() {
-    const bool plain = spec_.family == model::Family::dielectric_elastomer_nondimensional;
-    const bool is_spring = spec_.family == model::Family::spring_mass;
+    const bool plain = spec_.type->nondimensional;
     const auto unit = [&](const char* name) { return plain ? std::string() : std::string(name); };
     if (series_ != nullptr) {
-        std::vector<Column> columns = {
-            {"time", unit("s")}, {"cycle", ""}, {"phase", unit("rad")}, {"x", unit("m")}, {"x'", unit("m/s")}};
-        if (system_.states() > 2) { columns.insert(columns.end(), {{"xi_I", ""}, {"xi_II", ""}}); }
+        std::vector<Column> columns = {{"time", unit("s")}, {"cycle", ""}, {"phase", unit("rad")}};
+        for (const model::StateInfo& state : spec_.type->states.first(static_cast<std::size_t>(system_.states()))) {
+            columns.push_back({std::string(state.name), plain ? std::string() : std::string(state.unit)});
+        }
         columns.push_back({"stop_force", unit("N")});
-        if (is_spring) {
-            columns.push_back({"drive_force", "N"});
-        } else {
-            const char* name = plain ? "phi" : "voltage";
-            columns.push_back({std::string(name) + "_I", unit("V")});
-            columns.push_back({std::string(name) + "_II", unit("V")});
+        for (const model::DriveSignal& drive : spec_.type->drives) {
+            columns.push_back({std::string(drive.name), std::string(drive.unit)});
         }
         series_->header(columns);
     }
@@ -123,7 +113,7 @@ void TimeSeries::add_velocity(double nondimensional) { state_[1] += nondimension
 
 void TimeSeries::scale_drive(double share) {
     share_ = share;
-    const std::size_t drive = drive_index(spec_);
+    const auto drive = static_cast<std::size_t>(system_.integrator->info().drive);
     flow::ParameterVector parameters = nominal_.parameters;
     parameters[drive] *= share;
     system_ = nominal_.with(parameters);
@@ -132,7 +122,7 @@ void TimeSeries::scale_drive(double share) {
 double TimeSeries::time(double position) const { return 2.0 * pi * position / system_.omega() * scales_.time; }
 
 double TimeSeries::stop_force() const {
-    if (spec_.law == model::StopLaw::none) { return 0.0; }
+    if (!model::has_stop(spec_.law)) { return 0.0; }
     const flow::SystemInfo& info = system_.integrator->info();
     const auto parameter = [&](int i) { return system_.parameters[static_cast<std::size_t>(i)]; };
     const double overlap = state_[0] - system_.stop_position();
@@ -148,17 +138,8 @@ void TimeSeries::write_row() {
     const std::vector<double> state = design::to_user(state_, scales_, system_.states());
     row.insert(row.end(), state.begin(), state.end());
     row.push_back(scales_.force * stop_force());
-    const double drive = system_.parameters[drive_index(spec_)];
-    switch (spec_.family) {
-        case model::Family::spring_mass: row.push_back(scales_.force * drive * std::cos(phase)); break;
-        case model::Family::dielectric_elastomer_nondimensional:
-        case model::Family::dielectric_elastomer_si: {
-            const bool plain = spec_.family == model::Family::dielectric_elastomer_nondimensional;
-            const double swing = plain ? drive : scales_.voltage * share_;
-            row.push_back(0.5 * swing * (1.0 - std::cos(phase)));
-            row.push_back(0.5 * swing * (1.0 + std::cos(phase)));
-        }
-    }
+    const double amplitude = spec_.value(*model::key_of(model::Role::drive, *spec_.type)) * share_;
+    for (const model::DriveSignal& drive : spec_.type->drives) { row.push_back(amplitude * drive.shape(phase)); }
     series_->row(row);
 }
 

@@ -2,7 +2,7 @@
 /// \file
 /// A motion followed sample by sample, written as rows in the problem's units.
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "flow/flow.hpp"
 #include "verbs/study.hpp"
 

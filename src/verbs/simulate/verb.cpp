@@ -22,7 +22,7 @@ void read_start(SimulateOptions& options, const Setting& setting, const Context&
         options.from = text == "rest" ? SimulationStart::rest : SimulationStart::orbit;
         return;
     }
-    const std::size_t states = problem::states_of(context.actuator.family);
+    const std::size_t states = problem::states_of(*context.actuator.type);
     const bool is_word =
         !text.empty() && std::string_view("+-.0123456789").find(text.front()) == std::string_view::npos;
     if (is_word || text.empty()) {
@@ -39,7 +39,7 @@ std::vector<Echo> start_echo(const SimulateOptions& options, const Context& /*co
 
 void read_kick(SimulateOptions& options, const Setting& setting, const Context& context) {
     if (trimmed(setting.value) == "none") { return; }
-    const Kick kick = parse_kick(setting, context.actuator.family);
+    const Kick kick = parse_kick(setting, *context.actuator.type);
     if (!(kick.end() <= options.cycles)) {
         throw bad_value(setting, "it ends at cycle " + model::number_text(kick.end()) +
                                      ", after the series (cycles = " + std::to_string(options.cycles) + ")");
@@ -48,7 +48,7 @@ void read_kick(SimulateOptions& options, const Setting& setting, const Context& 
 }
 
 std::vector<Echo> kick_echo(const SimulateOptions& options, const Context& context) {
-    return {{options.kick ? kick_text(*options.kick, context.actuator.family) : "none"}};
+    return {{options.kick ? kick_text(*options.kick, *context.actuator.type) : "none"}};
 }
 
 Outcome run(Session& session) {

@@ -1,6 +1,6 @@
 #include "verbs/sweep/sweep.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "model/number_text.hpp"
 #include "orbit/frequency_sweep.hpp"
 #include "verbs/sweep/sweep_findings.hpp"
@@ -27,13 +27,13 @@ struct Sweep {
           observer(watcher),
           stop(stopper),
           scaled(model::scale(problem.actuator)),
-          scene(design::make_scene(problem)) {}
+          scene(design::make_integrators(problem)) {}
 
     const SweepOptions& study;
     const Observer& observer;
     const StopRequest& stop;
     model::Scaled scaled;
-    design::Scene scene;
+    design::Integrators scene;
     double from = 0.0;  ///< omega
     double to = 0.0;
     std::atomic<long> points_done = 0;
@@ -168,11 +168,9 @@ void check(const SweepOptions& study) {
     if (study.chirp_cycles < 1) { throw std::invalid_argument("sweep.chirp_cycles: allowed is at least 1"); }
 }
 
-constexpr std::size_t state_columns = 4;
-
 /// The header of the table: states as far as the problem has them.
 std::vector<Column> columns(const StudyProblem& problem, SweepMode mode) {
-    const bool plain = problem.design.actuator.family == model::Family::dielectric_elastomer_nondimensional;
+    const bool plain = problem.design.actuator.type->nondimensional;
     const auto unit = [&](const char* name) { return plain ? std::string() : std::string(name); };
     std::vector<Column> header = {{"omega", ""}, {"drive_frequency", unit("Hz")}, {"direction", ""}};
     if (mode == SweepMode::steps) {
@@ -184,10 +182,9 @@ std::vector<Column> columns(const StudyProblem& problem, SweepMode mode) {
     header.push_back({"peak_force", unit("N")});
     header.push_back({"contacts", ""});
     if (mode == SweepMode::chirp) { return header; }
-    const std::array<Column, state_columns> states = {
-        {{"x", unit("m")}, {"x'", unit("m/s")}, {"xi_I", ""}, {"xi_II", ""}}};
-    const bool is_spring = problem.design.actuator.family == model::Family::spring_mass;
-    for (std::size_t k = 0; k < (is_spring ? 2 : state_columns); ++k) { header.push_back(states[k]); }
+    for (const model::StateInfo& state : problem.design.actuator.type->states) {
+        header.push_back({std::string(state.name), plain ? std::string() : std::string(state.unit)});
+    }
     return header;
 }
 

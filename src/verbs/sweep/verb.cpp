@@ -17,8 +17,11 @@ using problem::Setting;
 
 constexpr int longest_sweep_period = 12;  // drive cycles: what orbit::settle_until_repeating compares
 
-bool is_plain(const Context& context) {
-    return context.actuator.family == model::Family::dielectric_elastomer_nondimensional;
+bool is_plain(const Context& context) { return context.actuator.type->nondimensional; }
+
+bool takes_rad_per_second(const model::Actuator& actuator) {
+    return std::any_of(actuator.frequencies.begin(), actuator.frequencies.end(),
+                       [](model::Key key) { return model::key_info(key).unit == "rad/s"; });
 }
 
 /// An angular frequency: omega of a nondimensional problem, else in Hz, or for spring-mass problems also in rad/s.
@@ -27,8 +30,7 @@ double parse_frequency(const Setting& setting, const Context& context) {
     try {
         if (is_plain(context)) {
             value = model::parse_plain_number(setting.value);
-        } else if (context.actuator.family == model::Family::spring_mass &&
-                   setting.value.find("rad") != std::string::npos) {
+        } else if (takes_rad_per_second(*context.actuator.type) && setting.value.find("rad") != std::string::npos) {
             value = model::parse_quantity(setting.value, "rad/s");
         } else {
             value = 2.0 * std::numbers::pi * problem::parse_key_value(model::Key::drive_frequency, setting.value);

@@ -12,7 +12,7 @@
 /// (primes: d/dtheta), which is the force of the paper's eq. (10) rearranged so that a step of any exponents needs nine
 /// convolutions and one power. Both membranes go through the convolutions together as a Pair.
 
-#include "model/parameters.hpp"
+#include "model/membrane/membrane.hpp"
 #include "numerics/dual.hpp"
 
 #include <array>
@@ -33,7 +33,9 @@ public:
     using Scalar = T;
     using Base = typename ScalarTraits<T>::Base;
     static constexpr int states = Viscous ? 4 : 2;
-    static constexpr bool membranes = true;
+    static constexpr int peaks = static_cast<int>(membrane::peaks.size());
+    static consteval PeakSignal peak_signal(int k) { return membrane::peaks[static_cast<std::size_t>(k)]; }
+    static constexpr int means = 0;
     static constexpr int max_order = MaxOrder;
     using State = std::array<T, states>;
 
@@ -119,9 +121,9 @@ public:
         }
     }
 
-    using Series = std::array<T, MaxOrder + 1>;
-    [[nodiscard]] const Series& x() const { return x_; }
-    [[nodiscard]] const Series& v() const { return v_; }
+    using Coefficients = std::array<T, MaxOrder + 1>;
+    [[nodiscard]] const Coefficients& x() const { return x_; }
+    [[nodiscard]] const Coefficients& v() const { return v_; }
     [[nodiscard]] const T& stop_position() const { return x_stop_; }
     [[nodiscard]] const T& stop_stiffness() const { return stiffness_; }
     [[nodiscard]] const T& stop_damping() const { return damping_; }
@@ -137,18 +139,27 @@ public:
         return m;
     }
 
-    /// Squared drive phi^2 of membrane 0 or 1 and the drive phi itself, as coefficients in theta.
-    [[nodiscard]] T phi_squared(int side, int n) const { return side == 0 ? phi2_[n].first() : phi2_[n].second(); }
-    [[nodiscard]] T phi(int side, int n) const {
-        const T swing = 0.5 * voltage_ * cos1_[n];
-        const T mean = n == 0 ? 0.5 * voltage_ : T(0.0);
-        return side == 0 ? mean - swing : mean + swing;
+    /// Field: s phi^2, the square of phi lambda_1 over that of lambda_p. Current: d(s phi)/dtau.
+    int peak_series(int peak, int side, int order, Coefficients& out) const {
+        if (peak == membrane::field) {
+            for (int n = 0; n < order; ++n) {
+                T sum(0.0);
+                for (int j = 0; j <= n; ++j) { sum += s(side, j) * phi_squared(side, n - j); }
+                out[n] = sum;
+            }
+            return order - 1;
+        }
+        for (int n = 0; n < order; ++n) {
+            T charge(0.0);
+            for (int j = 0; j <= n; ++j) { charge += s(side, j) * phi(side, n - j); }
+            if (n > 0) { out[n - 1] = charge * (omega_ * static_cast<Base>(n)); }
+        }
+        return order - 2;
     }
-    [[nodiscard]] T s(int side, int n) const { return side == 0 ? s_[n].first() : s_[n].second(); }
-    /// lambda_1 = prestretch sqrt(s).
-    [[nodiscard]] T prestretch() const {
+    [[nodiscard]] T peak_value(int peak, const T& largest) const {
         using std::exp;
-        return exp(log_prestretch_);
+        using std::sqrt;
+        return peak == membrane::field ? exp(log_prestretch_) * sqrt(largest) : largest;
     }
 
     /// Power of the drive and of the viscous losses, coefficient n (n below the expansion order), per unit tau.
@@ -174,6 +185,14 @@ public:
     }
 
 private:
+    /// Squared drive phi^2 of membrane 0 or 1 and the drive phi itself, as coefficients in theta.
+    [[nodiscard]] T phi_squared(int side, int n) const { return side == 0 ? phi2_[n].first() : phi2_[n].second(); }
+    [[nodiscard]] T phi(int side, int n) const {
+        const T swing = 0.5 * voltage_ * cos1_[n];
+        const T mean = n == 0 ? 0.5 * voltage_ : T(0.0);
+        return side == 0 ? mean - swing : mean + swing;
+    }
+    [[nodiscard]] T s(int side, int n) const { return side == 0 ? s_[n].first() : s_[n].second(); }
     static T log_of(const T& a) {
         using std::log;
         return log(a);
@@ -188,7 +207,7 @@ private:
             target = value;
         }
     }
-    static T at(const Series& c, int order, const Base& h) {
+    static T at(const Coefficients& c, int order, const Base& h) {
         T r = c[order];
         for (int j = order - 1; j >= 0; --j) { r = r * h + c[j]; }
         return r;
@@ -340,7 +359,7 @@ private:
     T sin1_, cos2_, sin2_;
     Base inverse_factorial_ = 1;
     Base power_of_two_ = 1;
-    Series x_, v_, cos1_;
+    Coefficients x_, v_, cos1_;
     Pair<T> inverse_s_;
     numerics::PairSeries<T, MaxOrder + 1> u_, s_, w_, p_, q_, root_, ds_, l_, m_, r_, z_, e_, b_, phi2_;
 };

@@ -1,4 +1,4 @@
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 
 #include "kernels/kernels.hpp"
 
@@ -13,23 +13,22 @@ namespace {
 
 using model::Specification;
 
-/// The way is found at this tolerance; everything met on it is refined at the problem's own.
+/// The way is found at this tolerance, in fewer and cheaper steps; everything met on it is refined at the problem's
+/// own.
 constexpr double scout_tolerance = 1e-8;
 
 std::unique_ptr<flow::Integrator> make_integrator(const Problem& problem, double tolerance) {
     const Specification& spec = problem.actuator;
-    const bool viscous = model::actuator_kind(spec.family) == model::ActuatorKind::spring_mass ||
-                         model::scale(spec).parameters[model::membrane::mu_ratio] > 0.0;
     kernels::IntegratorOptions options;
     options.integrator = problem.solver.integrator;
     options.instruction_set = problem.solver.instruction_set;
     options.tolerance = tolerance;
-    return kernels::make_integrator(model::actuator_kind(spec.family), spec.law, viscous, options);
+    return kernels::make_integrator(spec.type->scene(spec), spec.law, options);
 }
 
 }  // namespace
 
-Scene make_scene(const Problem& problem) {
+Integrators make_integrators(const Problem& problem) {
     const double tolerance = problem.solver.tolerance;
     return {make_integrator(problem, tolerance), make_integrator(problem, std::max(1e-16, 1e-2 * tolerance)),
             make_integrator(problem, std::max(scout_tolerance, tolerance))};
@@ -46,10 +45,7 @@ double drive_frequency(double omega, const model::Scales& scales) {
 }
 
 std::vector<double> state_scales(const model::Scales& scales, int states) {
-    std::vector<double> factors(static_cast<std::size_t>(states), 1.0);
-    factors[0] = scales.length;
-    factors[1] = scales.length / scales.time;
-    return factors;
+    return {scales.state.begin(), scales.state.begin() + states};
 }
 
 std::vector<double> to_user(const flow::State& y, const model::Scales& scales, int states) {
@@ -58,7 +54,8 @@ std::vector<double> to_user(const flow::State& y, const model::Scales& scales, i
     return out;
 }
 
-flow::State from_user(const std::vector<double>& given, std::string_view key, const model::Scales& scales, int states) {
+flow::State from_user(const std::vector<double>& given, std::string_view key, const model::Actuator& actuator,
+                      const model::Scales& scales, int states) {
     const std::string name(key);
     if (given.size() != static_cast<std::size_t>(states)) {
         throw std::invalid_argument(name + " has " + std::to_string(given.size()) + " entries: expected " +
@@ -70,8 +67,10 @@ flow::State from_user(const std::vector<double>& given, std::string_view key, co
         if (!std::isfinite(given[k])) { throw std::invalid_argument(name + ": every entry must be a finite number"); }
         y[k] = given[k] / factors[k];
     }
-    if (states > 2 && !(y[2] > 0.0 && y[3] > 0.0)) {
-        throw std::invalid_argument(name + ": the stretches xi_I and xi_II must be positive");
+    for (std::size_t k = 0; k < given.size(); ++k) {
+        if (actuator.states[k].positive && !(y[k] > 0.0)) {
+            throw std::invalid_argument(name + ": " + std::string(actuator.positive_states) + " must be positive");
+        }
     }
     return y;
 }

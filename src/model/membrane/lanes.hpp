@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Taylor coefficients of several motions of one dielectric elastomer actuator at once, one per SIMD lane: the series
-/// of model/membrane_jet.hpp without derivatives. Lanes differ in state, phase and contact, not in parameters.
+/// of model/membrane/jet.hpp without derivatives. Lanes differ in state, phase and contact, not in parameters.
 ///
 /// With R = sqrt(s), which makes w = R'/R half the log-derivative of s = 1 + u^2,
 ///
@@ -14,8 +14,8 @@
 /// have in common (u_I and u_II differ by the rod length) is convolved once. All series lie side by side, coefficient
 /// by coefficient, so that they share the first-level cache evenly.
 
-#include "model/membrane_jet.hpp"
-#include "model/parameters.hpp"
+#include "model/membrane/jet.hpp"
+#include "model/membrane/membrane.hpp"
 #include "numerics/lane_math.hpp"
 
 #include <array>
