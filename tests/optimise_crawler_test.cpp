@@ -159,7 +159,7 @@ TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions,
 TEST_CASE("a multiplier is what a wider limit gains") {
     verbs::StudyProblem problem = solved().problem;
     REQUIRE(solved().result.status == verbs::OptimiseStatus::optimal);
-    problem.design.actuator.set(Key::layers, 3.0);
+    problem.design.actuator.set(model::membrane::key::layers, 3.0);
     std::erase_if(problem.design.variables, [](const design::DesignVariable& v) { return v.integer; });
     const verbs::LimitReport* active = nullptr;
     std::size_t which = 0;

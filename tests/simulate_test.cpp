@@ -25,7 +25,7 @@ using std::numbers::pi;
 
 verbs::StudyProblem at_omega(double omega) {
     verbs::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
-    problem.design.actuator.set(model::Key::nd_omega, omega);
+    problem.design.actuator.set(model::membrane::key::nd_omega, omega);
     return problem;
 }
 
@@ -228,7 +228,7 @@ TEST_CASE("the motion without the kick goes on from the phase of the kick") {
 
 TEST_CASE("a motion of several cycles is the same from each of its strobed states") {
     const verbs::StudyProblem problem = at_omega(1.78);
-    const design::Scene scene = design::make_scene(problem.design);
+    const design::Integrators scene = design::make_integrators(problem.design);
     const model::Scaled scaled = model::scale(problem.design.actuator);
     const flow::System system{scene.own.get(), scaled.parameters, nullptr};
     const flow::State first = test::reference_orbits[5].state;
@@ -268,7 +268,7 @@ TEST_CASE("starts: an orbit at the edge, a given one, rest; no edge without impa
     REQUIRE(polished.ending == verbs::Ending::verified);
     for (std::size_t k = 0; k < 4; ++k) { CHECK(std::abs(polished.start[k] - upper_branch[k]) < 1e-10); }
 
-    problem.design.actuator.set(model::Key::nd_voltage, 0.1);
+    problem.design.actuator.set(model::membrane::key::nd_voltage, 0.1);
     const auto weak = simulated(problem, SimulateOptions{});
     CHECK(weak.ending == verbs::Ending::infeasible);
     CHECK_FALSE(weak.reason.empty());

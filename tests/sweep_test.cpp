@@ -22,11 +22,11 @@ namespace {
 /// A shipped problem ready to integrate.
 struct Bench {
     verbs::StudyProblem problem;
-    design::Scene scene;
+    design::Integrators scene;
     flow::System system;
     explicit Bench(const std::string& name)
         : problem(test::shipped_problem(name)),
-          scene(make_integrators(problem.design)) {
+          scene(design::make_integrators(problem.design)) {
         system = {scene.own.get(), model::scale(problem.design.actuator).parameters, nullptr};
     }
     [[nodiscard]] flow::State rest() const { return scene.own->rest_state(system.parameters); }
@@ -206,7 +206,7 @@ TEST_CASE("the paper's sweep jumps at the edges and lies on the exact orbits") {
 
 TEST_CASE("without the stop both directions coincide") {
     verbs::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
-    problem.design.actuator.law = model::StopLaw::none;
+    problem.design.actuator.law = model::ContactLaw::none;
     const auto result = verbs::run_sweep(problem, paper_range(60), nullptr, {}, {});
     REQUIRE(result.ending == verbs::Ending::verified);
     CHECK(result.comparison.coincide());
