@@ -152,6 +152,7 @@ struct EnsembleMember {
     Status status = Status::not_run;
     State state{};     ///< at the end
     int contacts = 0;  ///< entries met
+    long steps = 0;
 };
 
 template <class AnyRequest>
@@ -250,7 +251,7 @@ struct System {
     /// Within the limits of `cost`, if there is one: a run that they end, or do not let begin, has the status cancelled
     /// or budget_spent.
     void run(const Request& request, Result& result) const;
-    /// Likewise for many starts; each is charged its phase.
+    /// Likewise for many starts; each is charged its phase and its steps.
     void run_ensemble(const EnsembleRequest& request, std::span<EnsembleMember> members) const;
 };
 

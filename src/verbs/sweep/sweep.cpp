@@ -3,6 +3,7 @@
 #include "design/integrators.hpp"
 #include "model/number_text.hpp"
 #include "orbit/frequency_sweep.hpp"
+#include "verbs/limits.hpp"
 #include "verbs/sweep/sweep_findings.hpp"
 
 #include <algorithm>
@@ -19,21 +20,24 @@ namespace {
 
 constexpr double default_from = 0.6;  // of the linear resonance
 constexpr double default_to = 2.0;
+/// The longest sweep that options allow must fit, at the 10 to 20 steps of the Taylor integrator a drive cycle.
+constexpr double steps_per_cycle = 50.0;
 
 /// What both directions share.
 struct Sweep {
-    Sweep(const design::Problem& problem, const SweepOptions& how, const Observer& watcher, const StopRequest& stopper)
+    Sweep(const design::Problem& problem, const SweepOptions& how, const Observer& watcher,
+          const numerics::CancelRequest& request)
         : study(how),
           observer(watcher),
-          stop(stopper),
+          cancelled(request),
           scaled(model::scale(problem.actuator)),
-          scene(design::make_integrators(problem)) {}
+          integrators(design::make_integrators(problem)) {}
 
     const SweepOptions& study;
     const Observer& observer;
-    const StopRequest& stop;
+    const numerics::CancelRequest& cancelled;
     model::Scaled scaled;
-    design::Integrators scene;
+    design::Integrators integrators;
     double from = 0.0;  ///< omega
     double to = 0.0;
     std::atomic<long> points_done = 0;
@@ -42,6 +46,11 @@ struct Sweep {
     [[nodiscard]] long points_in_all() const {
         return 2L * (study.mode == SweepMode::steps ? study.steps + 1 : study.chirp_cycles);
     }
+    /// Most drive cycles of one direction.
+    [[nodiscard]] double cycles_in_all() const {
+        return study.mode == SweepMode::steps ? (study.steps + 1.0) * study.max_cycles
+                                              : static_cast<double>(study.chirp_cycles) + study.max_cycles;
+    }
     /// False when the sweep must end.
     bool report(const std::string& line) {
         const long done = ++points_done;
@@ -49,7 +58,7 @@ struct Sweep {
             const std::lock_guard lock(mutex);
             observer(static_cast<double>(done) / static_cast<double>(points_in_all()), line);
         }
-        return !(stop && stop());
+        return !(cancelled && cancelled());
     }
 };
 
@@ -131,11 +140,13 @@ void chirp(Sweep& sweep, const flow::System& system, const flow::State& rest, Sw
 SweepDirection go(Sweep& sweep, bool forward) {
     SweepDirection direction;
     direction.forward = forward;
-    flow::Cost cost;
-    flow::System system{sweep.scene.own.get(), sweep.scaled.parameters, &cost};
+    flow::Cost cost = limited_cost(sweep.cancelled, sweep.cycles_in_all(), steps_per_cycle);
+    flow::System system{sweep.integrators.own.get(), sweep.scaled.parameters, &cost};
     const flow::State rest = system.integrator->rest_state(system.parameters);
     (sweep.study.mode == SweepMode::steps ? step : chirp)(sweep, system, rest, direction);
     direction.periods = cost.periods();
+    direction.limit = cost.allowance();
+    if (direction.limit != flow::Status::ok) { direction.trouble = design::reason_of_limit(cost); }
     return direction;
 }
 
@@ -152,7 +163,7 @@ std::vector<SweepDirection> go_both_ways(Sweep& sweep, int jobs) {
 }
 
 void set_range(Sweep& sweep) {
-    const double resonance = sweep.scene.own->linear_resonance(sweep.scaled.parameters);
+    const double resonance = sweep.integrators.own->linear_resonance(sweep.scaled.parameters);
     const double unit = sweep.scaled.scales.time;
     sweep.from = sweep.study.from ? unit * *sweep.study.from : default_from * resonance;
     sweep.to = sweep.study.to ? unit * *sweep.study.to : default_to * resonance;
@@ -215,12 +226,15 @@ void conclude(const Sweep& sweep, SweepResult& result) {
     long points = 0;
     for (const SweepDirection& direction : result.directions) {
         points += static_cast<long>(direction.points.size());
-        if (!direction.trouble.empty() && result.reason.empty()) {
-            result.ending = Ending::some_failed;
+        if (direction.limit == flow::Status::cancelled) {
+            result.ending = Ending::interrupted;
+            result.reason = "stopped before the end";
+        } else if (!direction.trouble.empty() && result.reason.empty()) {
+            result.ending = direction.limit == flow::Status::ok ? Ending::some_failed : Ending::budget;
             result.reason = (direction.forward ? "forward: " : "backward: ") + direction.trouble;
         }
     }
-    if (result.ending == Ending::some_failed) { return; }
+    if (result.ending != Ending::not_run) { return; }
     result.ending = points == sweep.points_in_all() ? Ending::verified : Ending::interrupted;
     if (result.ending == Ending::interrupted) { result.reason = "stopped before the end"; }
 }
@@ -228,10 +242,10 @@ void conclude(const Sweep& sweep, SweepResult& result) {
 }  // namespace
 
 SweepResult run_sweep(const StudyProblem& problem, const SweepOptions& study, RowSink* rows, const Observer& observer,
-                      const StopRequest& stop) {
+                      const numerics::CancelRequest& cancelled) {
     const auto start = std::chrono::steady_clock::now();
     check(study);
-    Sweep sweep(problem.design, study, observer, stop);
+    Sweep sweep(problem.design, study, observer, cancelled);
     set_range(sweep);
 
     SweepResult result;
