@@ -9,10 +9,10 @@ using namespace percuss::tests;
 
 TEST_CASE("time limits and signals reach into the integrator") {
     const std::vector<std::string> absurd[] = {
-        // some 1e6 steps a drive cycle in the relaxation of the membranes
+        // stiff: 20 million steps and 20 s without an orbit
         {"orbit", shipped("wu2022-fig8.ini"), "--material.maxwell_viscosity", "1e-6", "--drive.frequency", "0.01",
          "--orbit.period", "12"},
-        // minutes in one ensemble of starts
+        // starts in a stop so damped that it is stiff
         {"evaluate", shipped("wu2022-nondimensional.ini"), "--nondimensional.delta_i", "1e4", "--design.single_stable",
          "sampled", "--uniqueness.starts", "100000"},
         // more than a minute in the search for the edge

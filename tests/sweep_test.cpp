@@ -322,7 +322,7 @@ TEST_CASE("the program sweeps, with units, and without an edge when there is no 
     CHECK(document.at("comparison").at("coincide") == false);
     const auto results = folder.path() / "results" / "wu2022-actuator-sweep";
     const std::string table = read_file(results / "sweep.csv");
-    CHECK(table.starts_with("omega,drive_frequency [Hz],direction,cycles,settled,period,strobed_change,"
+    CHECK(table.starts_with("omega [rad/s],drive_frequency [Hz],direction,cycles,settled,period,strobed_change,"
                             "remaining_error,amplitude [m],x_max [m],x_min [m],peak_force [N],contacts,x [m],"));
     CHECK(lines(table) == 43);
     CHECK(read_file(results / "result.json") == si.out);

@@ -183,7 +183,7 @@ void check(const SweepOptions& study) {
 std::vector<Column> columns(const StudyProblem& problem, SweepMode mode) {
     const bool plain = problem.design.actuator.type->nondimensional;
     const auto unit = [&](const char* name) { return plain ? std::string() : std::string(name); };
-    std::vector<Column> header = {{"omega", ""}, {"drive_frequency", unit("Hz")}, {"direction", ""}};
+    std::vector<Column> header = {{"omega", unit("rad/s")}, {"drive_frequency", unit("Hz")}, {"direction", ""}};
     if (mode == SweepMode::steps) {
         for (const char* name : {"cycles", "settled", "period", "strobed_change", "remaining_error"}) {
             header.push_back({name, ""});
@@ -199,8 +199,9 @@ std::vector<Column> columns(const StudyProblem& problem, SweepMode mode) {
     return header;
 }
 
-std::vector<double> row_of(const SweepPoint& point, bool forward, SweepMode mode, std::size_t width) {
-    std::vector<double> row = {point.omega, point.drive_frequency, forward ? 1.0 : -1.0};
+/// `time`: the unit of time [s], 1 for a nondimensional problem.
+std::vector<double> row_of(const SweepPoint& point, bool forward, SweepMode mode, std::size_t width, double time) {
+    std::vector<double> row = {point.omega / time, point.drive_frequency, forward ? 1.0 : -1.0};
     if (mode == SweepMode::steps) {
         row.insert(row.end(), {static_cast<double>(point.cycles), point.settled ? 1.0 : 0.0,
                                static_cast<double>(point.period), point.strobed_change, point.remaining_error});
@@ -215,9 +216,11 @@ std::vector<double> row_of(const SweepPoint& point, bool forward, SweepMode mode
 void write(const SweepResult& result, const StudyProblem& problem, SweepMode mode, RowSink& rows) {
     const std::vector<Column> header = columns(problem, mode);
     rows.header(header);
+    const model::Specification& spec = problem.design.actuator;
+    const double time = spec.type->nondimensional ? 1.0 : model::scale(spec).scales.time;
     for (const SweepDirection& direction : result.directions) {
         for (const SweepPoint& point : direction.points) {
-            rows.row(row_of(point, direction.forward, mode, header.size()));
+            rows.row(row_of(point, direction.forward, mode, header.size(), time));
         }
     }
 }
