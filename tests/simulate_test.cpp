@@ -289,7 +289,7 @@ TEST_CASE("the program simulates, with units, and tells what a kick did") {
     CHECK(document.at("outcome") == "recovered");
     CHECK(document.at("after").at("polished") == true);
     CHECK(document.at("after").at("state").size() == 4);
-    const auto results = folder.path() / "results" / "wu2022-actuator-simulate";
+    const auto results = results_of(folder, "wu2022-actuator-simulate");
     const std::string series = read_file(results / "series.csv");
     CHECK(series.starts_with("time [s],cycle,phase [rad],x [m],x' [m/s],xi_I,xi_II,stop_force [N],voltage_I [V],"
                              "voltage_II [V]\n0,0,0,0.0025,0,"));

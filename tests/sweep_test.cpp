@@ -320,7 +320,7 @@ TEST_CASE("the program sweeps, with units, and without an edge when there is no 
     CHECK(document.at("directions").at(1).at("points").at(0).at("drive_frequency").get<double>() ==
           doctest::Approx(80.0));
     CHECK(document.at("comparison").at("coincide") == false);
-    const auto results = folder.path() / "results" / "wu2022-actuator-sweep";
+    const auto results = results_of(folder, "wu2022-actuator-sweep");
     const std::string table = read_file(results / "sweep.csv");
     CHECK(table.starts_with("omega [rad/s],drive_frequency [Hz],direction,cycles,settled,period,strobed_change,"
                             "remaining_error,amplitude [m],x_max [m],x_min [m],peak_force [N],contacts,x [m],"));
@@ -384,7 +384,7 @@ TEST_CASE("a sweep cut short keeps its points; bad input is told") {
         CHECK(outcome.exit_code == 2);
         CHECK(lines(outcome.err) == 1);
         CHECK(has(outcome.err, each.part));
-        CHECK_FALSE(std::filesystem::exists(folder.path() / "results" / "wu2022-nondimensional-sweep"));
+        CHECK_FALSE(std::filesystem::exists(folder.path() / "results"));
     }
 }
 

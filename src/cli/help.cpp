@@ -113,13 +113,11 @@ std::string quantities_help(std::size_t width) {
     Presentation help;
     help.title = "Quantities: for design.maximise, design.minimise and design.limit";
     Block block{"", "", {"quantity", "unit", "meaning", "actuators"}, {}};
-    for (std::size_t i = 0; i < design::quantity_count; ++i) {
-        const auto quantity = static_cast<design::Quantity>(i);
-        const design::QuantityInfo& info = design::quantity_info(quantity);
+    for (const design::QuantityInfo& info : design::all_quantities()) {
         std::string having;
         for (const model::Actuator* each : model::actuators()) {
             const auto all = design::reported_quantities(*each);
-            const bool has = std::find(all.begin(), all.end(), quantity) != all.end();
+            const bool has = std::find(all.begin(), all.end(), info.quantity) != all.end();
             if (has) { having += (having.empty() ? "" : ", ") + name_of(*each); }
         }
         block.rows.push_back({std::string(info.name), info.unit == "1" ? "-" : std::string(info.unit),
