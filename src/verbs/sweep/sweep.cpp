@@ -86,6 +86,11 @@ SweepPoint in_user_units(const orbit::SweptPoint& swept, const model::Scales& sc
     return point;
 }
 
+/// A point that a limit cut short is none: nothing was found out there.
+bool is_cut_short(flow::Status status) {
+    return status == flow::Status::cancelled || status == flow::Status::budget_spent;
+}
+
 std::string lost(flow::Status status, double omega) {
     return "the motion was lost at omega = " + std::to_string(omega) + ": " + std::string(flow::to_string(status));
 }
@@ -111,9 +116,10 @@ std::vector<double> frequencies(const Sweep& sweep, bool forward) {
 void step(Sweep& sweep, const flow::System& system, const flow::State& rest, SweepDirection& direction) {
     orbit::step_sweep(system, frequencies(sweep, direction.forward), rest, settling_options(sweep.study),
                       [&](const orbit::SweptPoint& swept) {
-                          direction.points.push_back(in_user_units(swept, sweep.scaled.scales, system.states()));
                           const auto status =
                               swept.settling.status != flow::Status::ok ? swept.settling.status : swept.extremes.status;
+                          if (is_cut_short(status)) { return false; }
+                          direction.points.push_back(in_user_units(swept, sweep.scaled.scales, system.states()));
                           if (status != flow::Status::ok) { direction.trouble = lost(status, swept.omega); }
                           return sweep.report("step sweep");
                       });
@@ -129,6 +135,7 @@ void chirp(Sweep& sweep, const flow::System& system, const flow::State& rest, Sw
         return;
     }
     orbit::chirp(system, from, to, sweep.study.chirp_cycles, settled.state, [&](const orbit::ChirpCycle& cycle) {
+        if (is_cut_short(cycle.extremes.status)) { return false; }
         direction.points.push_back(in_user_units(cycle.omega, cycle.extremes, sweep.scaled.scales));
         direction.points.back().cycles = 1;
         if (cycle.extremes.status != flow::Status::ok) { direction.trouble = lost(cycle.extremes.status, cycle.omega); }
