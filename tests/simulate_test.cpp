@@ -234,8 +234,8 @@ TEST_CASE("a motion of several cycles is the same from each of its strobed state
     const flow::State first = test::reference_orbits[5].state;
     const auto later = orbit::settle(system, first, 1);
     REQUIRE(later);
-    const verbs::Motion one = verbs::identify_motion(system, first, scaled.scales);
-    const verbs::Motion two = verbs::identify_motion(system, *later, scaled.scales);
+    const verbs::SettledMotion one = verbs::identify_motion(system, first, scaled.scales);
+    const verbs::SettledMotion two = verbs::identify_motion(system, *later, scaled.scales);
     REQUIRE(one.period == 3);
     CHECK(one.polished);
     CHECK(one.peak_force == doctest::Approx(test::reference_orbits[5].peak_force).epsilon(1e-8));
@@ -244,7 +244,7 @@ TEST_CASE("a motion of several cycles is the same from each of its strobed state
     CHECK(verbs::same_motion(system, two, one));
     const orbit::Orbit single = orbit::polish_orbit(system, orbit_at_1_9, 1);
     REQUIRE(single.ok());
-    const verbs::Motion other = verbs::identify_motion(system, orbit::state_at_zero(system, single), scaled.scales);
+    const verbs::SettledMotion other = verbs::identify_motion(system, orbit::state_at_zero(system, single), scaled.scales);
     REQUIRE(other.settled);
     CHECK(other.period == 1);
     CHECK_FALSE(verbs::same_motion(system, one, other));
