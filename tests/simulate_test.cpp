@@ -244,7 +244,8 @@ TEST_CASE("a motion of several cycles is the same from each of its strobed state
     CHECK(verbs::same_motion(system, two, one));
     const orbit::Orbit single = orbit::polish_orbit(system, orbit_at_1_9, 1);
     REQUIRE(single.ok());
-    const verbs::SettledMotion other = verbs::identify_motion(system, orbit::state_at_zero(system, single), scaled.scales);
+    const verbs::SettledMotion other =
+        verbs::identify_motion(system, orbit::state_at_zero(system, single), scaled.scales);
     REQUIRE(other.settled);
     CHECK(other.period == 1);
     CHECK_FALSE(verbs::same_motion(system, one, other));
