@@ -173,9 +173,10 @@ struct SystemInfo {
     int drive = 0;      ///< index of the amplitude of the drive
     std::array<std::string_view, max_parameters> names{};
     /// Without the stop the system, where Integrator::symmetric() says so, is unchanged under
-    /// state -> reflect(state), theta -> theta + pi, where reflect mirrors x about the centre, negates x' and permutes
-    /// the remaining states by `mirror`.
+    /// state -> reflect(state), theta -> theta + pi, where reflect mirrors x about the centre, negates x' and puts
+    /// mirror_sign times the state that `mirror` names in the place of each other one.
     std::array<int, max_states> mirror{};
+    std::array<double, max_states> mirror_sign{};
     std::span<const model::PeakSignal> peaks{};  ///< its peak signals: Observables::peak
     int means = 0;                               ///< number of its mean signals: Observables::mean
     bool releases_on_force = false;              ///< contact ends when the force has gone to zero (no-tension law)

@@ -57,6 +57,7 @@ flow::SystemInfo info_of(const model::Scene& scene, model::ContactLaw law) {
     info.drive = scene.roles.drive;
     std::copy(scene.parameters.begin(), scene.parameters.end(), info.names.begin());
     info.mirror = scene.mirror;
+    info.mirror_sign = scene.mirror_sign;
     info.peaks = scene.peaks;
     info.means = static_cast<int>(scene.means.size());
     info.releases_on_force = model::contact_rules(law).releases_on_force;

@@ -1,5 +1,5 @@
-#include "model/scaling.hpp"
 #include "model/spring/spring.hpp"
+#include "model/suspension.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -8,8 +8,6 @@ namespace percuss::model::spring {
 
 namespace {
 
-using std::cbrt;
-using std::sqrt;
 using std::numbers::pi;
 
 constexpr std::array table = {
@@ -26,15 +24,6 @@ constexpr std::array table = {
 constexpr std::array keys = {key::mass,     key::damping,        key::stiffness,    key::cubic,           key::force,
                              Key::stop_gap, Key::stop_stiffness, Key::stop_damping, Key::drive_frequency, key::omega};
 
-/// Length that displacements are measured in: the gap if there is one, else the static deflection under the force.
-template <class T>
-T unit_of_length(const Values<T>& v) {
-    if (has_stop(v.law) && number(v[Key::stop_gap]) > 0.0) { return v[Key::stop_gap]; }
-    if (!(number(v[key::force]) > 0.0)) { return 1.0; }
-    if (number(v[key::stiffness]) > 0.0) { return v[key::force] / v[key::stiffness]; }
-    return cbrt(v[key::force] / v[key::cubic]);
-}
-
 /// m x'' + c x' + k1 x + k3 x^3 + f_stop = F cos(theta) divided by m X / T^2, with x = X y and t = T tau.
 struct Scaling {
     template <class T>
@@ -42,11 +31,11 @@ struct Scaling {
         const T& mass = v[key::mass];
         const T& k1 = v[key::stiffness];
         const T& k3 = v[key::cubic];
-        const T unit = unit_of_length(v);
+        const T unit = unit_of_length(v, v[key::force], k1, k3);
 
         ScaledValues<T> out;
         out.length = unit;
-        out.time = sqrt(mass / (number(k1) > 0.0 ? k1 : k3 * unit * unit));
+        out.time = unit_of_time(mass, k1, k3, unit);
         const T per_stiffness = out.time * out.time / mass;
         const T per_damping = out.time / mass;
         out.force = unit / per_stiffness;

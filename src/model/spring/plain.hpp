@@ -4,6 +4,7 @@
 
 #include "model/plain.hpp"
 #include "model/spring/spring.hpp"
+#include "model/suspension.hpp"
 
 #include <cmath>
 
@@ -47,16 +48,8 @@ struct PlainSpring {
     static double centre(const Parameters&) { return 0.0; }
     static StateVector rest_state(const Parameters&) { return {}; }
     static StateRange internal_range(const Parameters&, double) { return {}; }
-    /// sqrt(k1); for a double well the frequency in a well, for a purely cubic spring the one (describing function,
-    /// 3/4 k3 A^2) at the static amplitude A = (F/k3)^(1/3); 1 when nothing restores the mass.
     static double linear_resonance(const Parameters& p) {
-        const double k1 = p[spring::stiffness];
-        const double k3 = p[spring::cubic];
-        if (k1 > 0.0) { return std::sqrt(k1); }
-        if (!(k3 > 0.0)) { return 1.0; }
-        const double amplitude = std::cbrt(std::abs(p[spring::force]) / k3);
-        const double squared = k1 < 0.0 ? -2.0 * k1 : 0.75 * k3 * amplitude * amplitude;
-        return squared > 0.0 ? std::sqrt(squared) : 1.0;
+        return natural_frequency(p[spring::stiffness], p[spring::cubic], p[spring::force]);
     }
 };
 
