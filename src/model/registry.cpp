@@ -1,5 +1,6 @@
 #include "model/registry.hpp"
 
+#include "model/coil/coil.hpp"
 #include "model/membrane/membrane.hpp"
 #include "model/number_text.hpp"
 #include "model/spring/spring.hpp"
@@ -15,7 +16,8 @@ namespace percuss::model {
 namespace {
 
 /// One line per way to describe an actuator.
-constexpr std::array<const Actuator*, 3> rows = {&membrane::si, &membrane::nondimensional, &spring::actuator};
+constexpr std::array<const Actuator*, 4> rows = {&membrane::si, &membrane::nondimensional, &spring::actuator,
+                                                 &coil::actuator};
 
 constexpr std::array<KeyInfo, shared_keys> shared = {
     {key_at_least(0.0, Key::stop_gap, "stop.gap", "m", "distance G from rest to the stop").with(Role::stop_gap),
