@@ -217,6 +217,28 @@ TEST_CASE("Taylor, ERK and CVODE agree") {
     }
 }
 
+TEST_CASE("auto takes CVODE where the current or the stop is stiff") {
+    const auto chosen = [](const model::Scene& scene, const flow::ParameterVector& p) {
+        return kernels::choose_integrator("auto", scene, model::ContactLaw::kelvin_voigt, p);
+    };
+    flow::ParameterVector p = {0.1, 1.0, 0.0, 1e3, 100.0, 300.0, 0.4, 100.0, 1.0, 1.2};
+    CHECK(chosen(model::coil::scene, p) == "taylor");
+    p[model::coil::resistance] = 2e4;
+    CHECK(chosen(model::coil::scene, p) == "cvode");
+    flow::ParameterVector s = {0.1, 1.0, 0.0, 0.5, 0.4, 200.0, 1.0, 1.1};
+    CHECK(chosen(model::spring::scene, s) == "taylor");
+    s[model::spring::stop_damping] = 1e5;
+    CHECK(chosen(model::spring::scene, s) == "cvode");
+    s[model::spring::stop_stiffness] = 1e10;  // no longer overdamped
+    CHECK(chosen(model::spring::scene, s) == "taylor");
+    CHECK(kernels::choose_integrator("erk", model::spring::scene, model::ContactLaw::none, s) == "erk");
+    Coil c;
+    c.inductance = 1e-8;
+    c.gap = 3e-4;
+    const Json stiff = answer("orbit", coil_file(c));
+    CHECK(stiff.at("status") == "ok");
+}
+
 TEST_CASE("over a period the electric work is the heat, the damper's and the stop's") {
     test::Random random(3);
     int balanced = 0;

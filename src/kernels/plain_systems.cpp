@@ -80,6 +80,7 @@ public:
     [[nodiscard]] double linear_resonance(const ParameterVector& p) const override {
         return Model::linear_resonance(p);
     }
+    [[nodiscard]] double fastest_decay(const ParameterVector& p) const override { return Model::fastest_decay(p); }
     [[nodiscard]] bool symmetric(const ParameterVector& p) const override { return Model::symmetric(p); }
     [[nodiscard]] double centre(const ParameterVector& p) const override { return Model::centre(p); }
     /// The centre is linear in the parameters.

@@ -29,6 +29,7 @@ T stop_force(const T& x, const T& v, const T& x_stop, const T& k, const T& delta
 ///   rest_state        everything at rest, undriven
 ///   internal_range    where the states beyond x and x' stay while |x - centre| <= reach (x and x': zero)
 ///   linear_resonance  natural frequency of small motions about rest at the mean drive, other states frozen
+///   fastest_decay     about the largest rate per unit of tau at which anything but the stop decays: what makes it stiff
 ///   symmetric         whether the free system has the half-cycle mirror symmetry that Scene::mirror describes
 template <class P>
 concept PlainModel = requires(const double* p, const double& theta, const double* state, double* out, double& drive,
@@ -41,6 +42,7 @@ concept PlainModel = requires(const double* p, const double& theta, const double
     { P::rest_state(parameters) } -> std::same_as<StateVector>;
     { P::internal_range(parameters, reach) } -> std::same_as<StateRange>;
     { P::linear_resonance(parameters) } -> std::same_as<double>;
+    { P::fastest_decay(parameters) } -> std::same_as<double>;
     { P::symmetric(parameters) } -> std::same_as<bool>;
 }
 &&(P::scene.peaks.empty() ||

@@ -52,6 +52,8 @@ struct PlainCoil {
     static bool meaningful(const StateVector& y) {
         return std::abs(y[0]) < 1e12 && std::abs(y[1]) < 1e12 && std::abs(y[2]) < 1e12;
     }
+    /// The current settles at the rate R/Le, the mass at c/m.
+    static double fastest_decay(const Parameters& p) { return std::max(p[coil::damping], p[coil::resistance]); }
     static bool symmetric(const Parameters&) { return true; }
     static double centre(const Parameters&) { return 0.0; }
     static StateVector rest_state(const Parameters&) { return {}; }

@@ -44,6 +44,7 @@ struct PlainSpring {
         spring_powers(p, theta, state, drive, loss);
     }
     static bool meaningful(const StateVector& y) { return std::abs(y[0]) < 1e12 && std::abs(y[1]) < 1e12; }
+    static double fastest_decay(const Parameters& p) { return p[spring::damping]; }
     static bool symmetric(const Parameters&) { return true; }
     static double centre(const Parameters&) { return 0.0; }
     static StateVector rest_state(const Parameters&) { return {}; }
