@@ -30,7 +30,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 struct Coil {
-    double mass = 5e-3, damping = 0.05, stiffness = 1263.0, cubic = 0.0;
+    double mass = 5e-3, damping = 0.05, stiffness = 1263.0, cubic = 0.0, bias = 0.0;
     double force_constant = 1.0, resistance = 6.0, inductance = 1e-4, voltage = 2.0;
     double gap = 4e-4, stop_stiffness = 1e5, stop_damping = 0.5;
     double frequency = 95.0;
@@ -51,7 +51,7 @@ std::string stop_section(const Coil& c) {
 
 std::string coil_file(const Coil& c) {
     return "[actuator]\ntype = voice-coil\n[voice-coil]\nmass = " + text(c.mass) + "\ndamping = " + text(c.damping) +
-           "\nstiffness = " + text(c.stiffness) + "\ncubic = " + text(c.cubic) +
+           "\nstiffness = " + text(c.stiffness) + "\ncubic = " + text(c.cubic) + "\nbias = " + text(c.bias) +
            "\nforce_constant = " + text(c.force_constant) + "\nresistance = " + text(c.resistance) +
            "\ninductance = " + text(c.inductance) + "\nvoltage = " + text(c.voltage) + "\n" + stop_section(c) +
            "[drive]\nfrequency = " + text(c.frequency) + "\n";
@@ -62,7 +62,8 @@ std::string spring_file(const Coil& c) {
     const double bl = c.force_constant;
     return "[actuator]\ntype = spring-mass\n[spring-mass]\nmass = " + text(c.mass) +
            "\ndamping = " + text(c.damping + bl * bl / c.resistance) + "\nstiffness = " + text(c.stiffness) +
-           "\ncubic = " + text(c.cubic) + "\nforce = " + text(bl * c.voltage / c.resistance) + "\n" + stop_section(c) +
+           "\ncubic = " + text(c.cubic) + "\nbias = " + text(c.bias) +
+           "\nforce = " + text(bl * c.voltage / c.resistance) + "\n" + stop_section(c) +
            "[drive]\nfrequency = " + text(c.frequency) + "\n";
 }
 

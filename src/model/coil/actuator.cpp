@@ -13,18 +13,21 @@ using std::numbers::pi;
 constexpr std::array table = {
     positive_key(key::mass, "voice-coil.mass", "kg", "moving mass m"),
     key_at_least(0.0, key::damping, "voice-coil.damping", "N s/m", "damping c of the suspension"),
-    key_at_least(0.0, key::stiffness, "voice-coil.stiffness", "N/m",
-                 "linear stiffness k1 of the suspension, above 0 unless cubic is above 0"),
+    key_at_least(
+        -unbounded_key, key::stiffness, "voice-coil.stiffness", "N/m",
+        "linear stiffness k1 of the suspension, above 0 unless cubic is above 0: two wells where it is negative"),
     any_key(key::cubic, "voice-coil.cubic", "N/m^3", "cubic stiffness k3 of the suspension", 0.0),
+    any_key(key::bias, "voice-coil.bias", "N", "constant force F0 on the mass towards the stop: gravity, a preload",
+            0.0),
     positive_key(key::force_constant, "voice-coil.force_constant", "N/A", "force constant Bl of the coil, also V s/m"),
     positive_key(key::resistance, "voice-coil.resistance", "ohm", "resistance R of the coil"),
     positive_key(key::inductance, "voice-coil.inductance", "H", "inductance Le of the coil"),
     key_at_least(0.0, key::voltage, "voice-coil.voltage", "V", "amplitude V of the driving voltage").with(Role::drive),
 };
 
-constexpr std::array keys = {key::mass,           key::damping,        key::stiffness,    key::cubic,
-                             key::force_constant, key::resistance,     key::inductance,   key::voltage,
-                             Key::stop_gap,       Key::stop_stiffness, Key::stop_damping, Key::drive_frequency};
+constexpr std::array keys = {key::mass,           key::damping,      key::stiffness,      key::cubic,   key::bias,
+                             key::force_constant, key::resistance,   key::inductance,     key::voltage, Key::stop_gap,
+                             Key::stop_stiffness, Key::stop_damping, Key::drive_frequency};
 
 /// The first equation divided by m X / T^2, the second by Le I / T, with x = X y, t = T tau, i = I j, Bl I = m X / T^2.
 struct Scaling {
@@ -52,6 +55,7 @@ struct Scaling {
         p[resistance] = v[key::resistance] * per_inductance;
         p[coupling] = bl * bl * per_damping * per_inductance;
         p[voltage] = v[key::voltage] * per_inductance / out.own[current_scale];
+        p[bias] = v[key::bias] / out.force;
         p[gap] = v[Key::stop_gap] / unit;
         p[stop_stiffness] = v[Key::stop_stiffness] * per_stiffness;
         p[stop_damping] = v[Key::stop_damping] * per_damping;
@@ -65,11 +69,7 @@ const Scene& scene_of(const Specification&) { return scene; }
 bool may_be_absent(const Specification&, Key) { return false; }
 
 void check(const Specification& spec, std::vector<std::string>& found) {
-    const double k1 = spec.value(key::stiffness);
-    if (k1 == 0.0 && spec.effective(key::cubic) <= 0.0) {
-        found.push_back(assignment(key::stiffness, k1) +
-                        " is out of range: must be above 0 unless voice-coil.cubic is above 0");
-    }
+    check_suspension(spec, key::stiffness, key::cubic, found);
 }
 
 constexpr std::array<StateInfo, states> state_infos = {

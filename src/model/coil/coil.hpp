@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The voice-coil actuator m x'' + c x' + k1 x + k3 x^3 + f_stop = Bl i, Le i' + R i + Bl x' = V cos(theta), stop at
-/// x = gap: its parameters, keys, signals and scene, and its row in the registry. State (x, x', i).
+/// The voice-coil actuator m x'' + c x' + k1 x + k3 x^3 + f_stop = Bl i + F0, Le i' + R i + Bl x' = V cos(theta), stop
+/// at x = gap: its parameters, keys, signals and scene, and its row in the registry. State (x, x', i).
 
 #include "model/actuator.hpp"
 #include "model/scene.hpp"
@@ -24,11 +24,12 @@ enum Index : std::uint8_t {
     stop_stiffness,
     stop_damping,
     omega,
+    bias,  // F0
     count
 };
 inline constexpr int states = 3;
-inline constexpr std::array<std::string_view, count> names = {"damping", "stiffness", "cubic", "rho",     "beta",
-                                                              "voltage", "gap",       "k",     "delta_i", "omega"};
+inline constexpr std::array<std::string_view, count> names = {
+    "damping", "stiffness", "cubic", "rho", "beta", "voltage", "gap", "k", "delta_i", "omega", "bias"};
 
 /// Peak signal: the current. Its slope depends on x', i and theta alone, which no contact makes jump.
 enum Peak : std::uint8_t { current };
@@ -56,6 +57,7 @@ inline constexpr Key force_constant = own_key(4, 4);
 inline constexpr Key resistance = own_key(4, 5);
 inline constexpr Key inductance = own_key(4, 6);
 inline constexpr Key voltage = own_key(4, 7);
+inline constexpr Key bias = own_key(4, 8);
 }  // namespace key
 
 extern const Actuator actuator;  ///< [voice-coil]

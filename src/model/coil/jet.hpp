@@ -37,6 +37,7 @@ public:
           stiffness_(p[coil::stop_stiffness]),
           damping_(p[coil::stop_damping]),
           omega_(p[coil::omega]),
+          bias_(p[coil::bias]),
           inverse_omega_(1.0 / p[coil::omega]),
           inverse_beta_(1.0 / p[coil::coupling]) {}
 
@@ -127,7 +128,8 @@ private:
     /// Coefficient n of the coil's force minus the forces of the suspension, given x up to there.
     T acceleration(int n) {
         square_[n] = product(x_, x_, n);
-        return i_[n] - c_ * v_[n] - k1_ * x_[n] - k3_ * product(square_, x_, n);
+        const T sum = i_[n] - c_ * v_[n] - k1_ * x_[n] - k3_ * product(square_, x_, n);
+        return n == 0 ? sum + bias_ : sum;
     }
     T stop_force(int n, const T& stiffness, const T& damping) const {
         const T penetration = n == 0 ? x_[0] - x_stop_ : x_[n];
@@ -144,7 +146,7 @@ private:
         i_[n + 1] = (drive_[n] - rho_ * i_[n] - beta_ * v_[n]) * inverse_omega_ * reciprocal;
     }
 
-    T c_, k1_, k3_, rho_, beta_, voltage_, x_stop_, stiffness_, damping_, omega_, inverse_omega_, inverse_beta_;
+    T c_, k1_, k3_, rho_, beta_, voltage_, x_stop_, stiffness_, damping_, omega_, bias_, inverse_omega_, inverse_beta_;
     T cos_{}, sin_{};
     Real inverse_factorial_ = 1;
     Coefficients x_, v_, i_, square_, drive_;

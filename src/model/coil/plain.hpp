@@ -20,7 +20,7 @@ struct PlainCoil {
         const T& x = state[0];
         const T& v = state[1];
         const T& i = state[2];
-        T acceleration = i - p[coil::damping] * v - p[coil::stiffness] * x - p[coil::cubic] * x * x * x;
+        T acceleration = i - p[coil::damping] * v - p[coil::stiffness] * x - p[coil::cubic] * x * x * x + p[coil::bias];
         if (touching) {
             acceleration -= stop_force(x, v, p[coil::gap], p[coil::stop_stiffness], p[coil::stop_damping]);
         }
@@ -54,9 +54,14 @@ struct PlainCoil {
     }
     /// The current settles at the rate R/Le, the mass at c/m.
     static double fastest_decay(const Parameters& p) { return std::max(p[coil::damping], p[coil::resistance]); }
-    static bool symmetric(const Parameters&) { return true; }
+    /// `held_force`: of the drive, were it held still.
+    static Suspension suspension(const Parameters& p) {
+        return {p[coil::stiffness], p[coil::cubic],          p[coil::bias],
+                p[coil::gap],       p[coil::stop_stiffness], p[coil::voltage] / p[coil::resistance]};
+    }
+    static bool symmetric(const Parameters& p) { return is_symmetric(suspension(p)); }
     static double centre(const Parameters&) { return 0.0; }
-    static StateVector rest_state(const Parameters&) { return {}; }
+    static StateVector rest_state(const Parameters& p) { return {rest_position(suspension(p)), 0.0, 0.0, 0.0}; }
     /// The voltage alone drives no more than V/R. The motion adds beta times the integral of exp(-rho t) x', which is
     /// below 2 beta reach (by parts) and below beta/rho times the speed; a speed as at the faster of drive and
     /// resonance, doubled.
@@ -64,13 +69,11 @@ struct PlainCoil {
         const double rho = p[coil::resistance];
         const double speed = 2.0 * std::max(p[coil::omega], linear_resonance(p)) * reach;
         const double bound = std::abs(p[coil::voltage]) / rho + p[coil::coupling] * std::min(2.0 * reach, speed / rho);
-        return {{0.0, 0.0, -bound, 0.0}, {0.0, 0.0, bound, 0.0}};
+        const Wells at = wells(suspension(p));
+        return {{at.lower, 0.0, -bound, 0.0}, {at.upper, 0.0, bound, 0.0}};
     }
     /// With the current frozen; the voltage held would press with V/R.
-    static double linear_resonance(const Parameters& p) {
-        const double held = p[coil::voltage] / p[coil::resistance];
-        return natural_frequency(p[coil::stiffness], p[coil::cubic], held);
-    }
+    static double linear_resonance(const Parameters& p) { return natural_frequency(suspension(p)); }
 };
 
 }  // namespace percuss::model

@@ -13,16 +13,20 @@ using std::numbers::pi;
 constexpr std::array table = {
     positive_key(key::mass, "spring-mass.mass", "kg", "moving mass m"),
     key_at_least(0.0, key::damping, "spring-mass.damping", "N s/m", "damping c of the suspension"),
-    key_at_least(0.0, key::stiffness, "spring-mass.stiffness", "N/m",
-                 "linear stiffness k1 of the suspension, above 0 unless cubic is above 0"),
+    key_at_least(
+        -unbounded_key, key::stiffness, "spring-mass.stiffness", "N/m",
+        "linear stiffness k1 of the suspension, above 0 unless cubic is above 0: two wells where it is negative"),
     any_key(key::cubic, "spring-mass.cubic", "N/m^3", "cubic stiffness k3 of the suspension", 0.0),
+    any_key(key::bias, "spring-mass.bias", "N", "constant force F0 on the mass towards the stop: gravity, a preload",
+            0.0),
     key_at_least(0.0, key::force, "spring-mass.force", "N", "amplitude F of the driving force").with(Role::drive),
     positive_key(key::omega, "spring-mass.omega", "rad/s", "angular drive frequency, in place of drive.frequency")
         .with(Role::frequency),
 };
 
-constexpr std::array keys = {key::mass,     key::damping,        key::stiffness,    key::cubic,           key::force,
-                             Key::stop_gap, Key::stop_stiffness, Key::stop_damping, Key::drive_frequency, key::omega};
+constexpr std::array keys = {key::mass,         key::damping,         key::stiffness, key::cubic,
+                             key::bias,         key::force,           Key::stop_gap,  Key::stop_stiffness,
+                             Key::stop_damping, Key::drive_frequency, key::omega};
 
 /// m x'' + c x' + k1 x + k3 x^3 + f_stop = F cos(theta) divided by m X / T^2, with x = X y and t = T tau.
 struct Scaling {
@@ -45,6 +49,7 @@ struct Scaling {
         p[stiffness] = k1 * per_stiffness;
         p[cubic] = k3 * unit * unit * per_stiffness;
         p[force] = v[key::force] / out.force;
+        p[bias] = v[key::bias] / out.force;
         p[gap] = v[Key::stop_gap] / unit;
         p[stop_stiffness] = v[Key::stop_stiffness] * per_stiffness;
         p[stop_damping] = v[Key::stop_damping] * per_damping;
@@ -58,11 +63,7 @@ const Scene& scene_of(const Specification&) { return scene; }
 bool may_be_absent(const Specification&, Key) { return false; }
 
 void check(const Specification& spec, std::vector<std::string>& found) {
-    const double k1 = spec.value(key::stiffness);
-    if (k1 == 0.0 && spec.effective(key::cubic) <= 0.0) {
-        found.push_back(assignment(key::stiffness, k1) +
-                        " is out of range: must be above 0 unless spring-mass.cubic is above 0");
-    }
+    check_suspension(spec, key::stiffness, key::cubic, found);
     if (spec.has(Key::drive_frequency) && spec.has(key::omega)) {
         found.emplace_back("drive.frequency and spring-mass.omega are both given: give one of them");
     }

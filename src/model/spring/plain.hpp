@@ -16,7 +16,7 @@ void spring_rhs(const T* p, const T& theta, const T* state, bool touching, T* ou
     using std::cos;
     const T& x = state[0];
     T acceleration = p[spring::force] * cos(theta) - p[spring::damping] * state[1] - p[spring::stiffness] * x -
-                     p[spring::cubic] * x * x * x;
+                     p[spring::cubic] * x * x * x + p[spring::bias];
     if (touching) {
         acceleration -= stop_force(x, state[1], p[spring::gap], p[spring::stop_stiffness], p[spring::stop_damping]);
     }
@@ -45,13 +45,19 @@ struct PlainSpring {
     }
     static bool meaningful(const StateVector& y) { return std::abs(y[0]) < 1e12 && std::abs(y[1]) < 1e12; }
     static double fastest_decay(const Parameters& p) { return p[spring::damping]; }
-    static bool symmetric(const Parameters&) { return true; }
-    static double centre(const Parameters&) { return 0.0; }
-    static StateVector rest_state(const Parameters&) { return {}; }
-    static StateRange internal_range(const Parameters&, double) { return {}; }
-    static double linear_resonance(const Parameters& p) {
-        return natural_frequency(p[spring::stiffness], p[spring::cubic], p[spring::force]);
+    /// `held_force`: of the drive, were it held still.
+    static Suspension suspension(const Parameters& p) {
+        return {p[spring::stiffness], p[spring::cubic],          p[spring::bias],
+                p[spring::gap],       p[spring::stop_stiffness], p[spring::force]};
     }
+    static bool symmetric(const Parameters& p) { return is_symmetric(suspension(p)); }
+    static double centre(const Parameters&) { return 0.0; }
+    static StateVector rest_state(const Parameters& p) { return {rest_position(suspension(p)), 0.0, 0.0, 0.0}; }
+    static StateRange internal_range(const Parameters& p, double) {
+        const Wells at = wells(suspension(p));
+        return {{at.lower, 0.0, 0.0, 0.0}, {at.upper, 0.0, 0.0, 0.0}};
+    }
+    static double linear_resonance(const Parameters& p) { return natural_frequency(suspension(p)); }
 };
 
 }  // namespace percuss::model
