@@ -56,7 +56,7 @@ TEST_CASE("low losses: the free motion leans left and folds; the tip of such a r
     while (branch.current().omega > 3.0 && folds.size() < 2 && branch.advance()) {
         if (branch.previous().omega_slope * branch.current().omega_slope >= 0.0) { continue; }
         const boundary::Boundary fold =
-            boundary::solve_boundary(free.system, boundary::FreeBranch::half_cycle(), boundary::Kind::fold,
+            boundary::solve_boundary(free.system, boundary::FreeBranch::map_of(free.system), boundary::Kind::fold,
                                      branch.current().state, branch.current().omega, {});
         REQUIRE(fold.ok());
         folds.push_back(fold.omega);

@@ -157,8 +157,9 @@ private:
     /// Uncertainty of the operating frequency: how far the edge moves at a tighter tolerance, and rounding.
     double error_of(const Operation& operation) {
         const boundary::Boundary& edge = *operation.edge;
-        const boundary::Boundary again = boundary::solve_boundary(
-            with(integrators_.tighter), boundary::FreeBranch::half_cycle(), edge.kind, edge.state, edge.omega, {});
+        const boundary::Boundary again =
+            boundary::solve_boundary(with(integrators_.tighter), boundary::FreeBranch::map_of(operation.system),
+                                     edge.kind, edge.state, edge.omega, {});
         const double moved = again.ok() ? std::abs(again.omega - edge.omega) : absent;
         return (1.0 - problem_.margin) * (moved + 4e-16 * edge.omega);
     }

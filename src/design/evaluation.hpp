@@ -38,7 +38,7 @@ struct OperatingPoint {
 
 /// The periodic orbit at the operating point, in the units of the problem.
 struct OrbitReport {
-    std::vector<double> state;  ///< at theta = 0: x [m], x' [m/s], xi_I, xi_II
+    std::vector<double> state;  ///< at theta = 0: x [m], x' [m/s], the actuator's others
     int period = 0;             ///< drive cycles
     int contacts = 0;           ///< per period
     double x_max = absent;      ///< extrema of the displacement [m]

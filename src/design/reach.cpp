@@ -27,7 +27,7 @@ constexpr int cycles_per_start = 150;
 /// Half the size of the box of starts where the stop leaves less room, nondimensional.
 constexpr double smallest_size = 0.05;
 
-/// A state about the centre: from two gaps behind it up to the stop, at speeds up to twice that of a motion of the size
+/// A state about rest: from two gaps behind it up to the stop, at speeds up to twice that of a motion of the size
 /// of the gap, internal states near rest.
 flow::State random_start(const flow::System& system, double gap, std::mt19937_64& generator) {
     const auto uniform = [&](double low, double high) {
@@ -35,7 +35,7 @@ flow::State random_start(const flow::System& system, double gap, std::mt19937_64
     };
     const double size = std::max(gap, smallest_size);
     flow::State y = system.integrator->rest_state(system.parameters);
-    y[0] = system.integrator->centre(system.parameters) + uniform(-2.0 * size, gap);
+    y[0] += uniform(-2.0 * size, gap);
     y[1] = uniform(-2.0, 2.0) * system.omega() * size;
     for (int k = 2; k < system.states(); ++k) { y[index(k)] *= uniform(0.97, 1.03); }
     return y;
@@ -197,7 +197,7 @@ Reached reach_from_rest(const flow::System& system, int period) {
     };
     if (period == 1 || fits(reached)) { return reached; }
     std::mt19937_64 generator(1);
-    const double gap = std::abs(system.stop_position() - system.integrator->centre(system.parameters));
+    const double gap = std::abs(system.stop_position() - system.integrator->rest_state(system.parameters)[0]);
     for (int attempt = 0; attempt < most_starts; ++attempt) {
         const auto settled = orbit::settle(system, random_start(system, gap, generator), cycles_per_start);
         if (!settled) { continue; }
