@@ -216,8 +216,8 @@ public:
 
     /// The system at rest, undriven: a start for anything.
     [[nodiscard]] virtual State rest_state(const ParameterVector& p) const = 0;
-    /// Where the states beyond x and x' stay while |x - centre| <= reach; the entry of x holds the outermost places, from
-    /// the centre, where the mass can rest without the stop, that of x' is zero.
+    /// Where the states beyond x and x' stay while |x - centre| <= reach; the entry of x holds the outermost places,
+    /// from the centre, where the mass can rest without the stop, that of x' is zero.
     [[nodiscard]] virtual StateRange internal_range(const ParameterVector& p, double reach) const;
     /// Natural frequency of small motions about rest at the mean drive, viscous states frozen, nondimensional rad.
     [[nodiscard]] virtual double linear_resonance(const ParameterVector& p) const = 0;
