@@ -130,7 +130,7 @@ void store_fact(const Database& database, const std::string& key, const std::str
 void begin_journal(const Database& database, const JournalWork& work, const Shard& shard) {
     // Columns of rows have no type: a typed one would turn -0.0 into 0.
     std::string columns = "row INTEGER PRIMARY KEY";
-    for (std::size_t i = 0; i < work.columns.size(); ++i) { columns += ", " + quoted(work.columns[i].name); }
+    for (const JournalColumn& column : work.columns) { columns += ", " + quoted(column.name); }
     database.run("PRAGMA application_id = " + std::to_string(application_id));
     database.run("PRAGMA user_version = " + std::to_string(schema_version));
     database.run("CREATE TABLE facts (key TEXT PRIMARY KEY, value TEXT)");
@@ -218,7 +218,7 @@ struct Journal::State {
     }
 };
 
-Journal::Journal(std::filesystem::path file, const JournalWork& work, const Shard& shard) {
+Journal::Journal(const std::filesystem::path& file, const JournalWork& work, const Shard& shard) {
     look_at(file);
     state_ = std::make_unique<State>(file, true);
     const Database& database = state_->database;
@@ -237,7 +237,7 @@ Journal::Journal(std::filesystem::path file, const JournalWork& work, const Shar
     state_->can_write = true;
 }
 
-Journal::Journal(std::filesystem::path file) {
+Journal::Journal(const std::filesystem::path& file) {
     if (look_at(file) == Found::nothing) {
         refuse(JournalFault::no_access, file, "does not exist or is empty; check the name of the folder");
     }

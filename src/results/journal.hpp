@@ -49,9 +49,9 @@ class Journal {
 public:
     /// Opens for writing: begins a journal where there is none, else resumes. Every stored block is read and checked.
     /// Throws JournalError with any fault but conflict.
-    Journal(std::filesystem::path file, const JournalWork& work, const Shard& shard = {});
+    Journal(const std::filesystem::path& file, const JournalWork& work, const Shard& shard = {});
     /// Opens an existing journal, whatever its work, to read it. Throws JournalError likewise.
-    explicit Journal(std::filesystem::path file);
+    explicit Journal(const std::filesystem::path& file);
 
     ~Journal();
     Journal(Journal&&) noexcept;
