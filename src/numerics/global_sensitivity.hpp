@@ -60,8 +60,8 @@ struct Sensitivity {
 /// it stays meaningful when rows are missing in part of the cube: it then speaks of the designs that are there.
 ///
 /// **Derivative-based.** S_T,i <= nu_i/(pi^2 V) for inputs uniform on [0, 1] and y with square-integrable derivatives
-/// on the whole cube (Sobol and Kucherenko, Math. Comput. Simul. 79, 2009, theorem 2 with the optimal constant of
-/// Kucherenko and Song 2016). With missing rows, or where y jumps, it is an indication and no bound.
+/// on the whole cube (Sobol and Kucherenko, Math. Comput. Simul. 79, 2009). With missing rows, or where y jumps, it is
+/// an indication and no bound.
 ///
 /// **Active direction.** Constantine, Dow and Wang, SIAM J. Sci. Comput. 36, 2014.
 ///
