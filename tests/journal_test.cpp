@@ -45,8 +45,8 @@ Row row_at(std::int64_t row) {
             row % 3 == 0 ? "no orbit, \"row\"\n" + std::to_string(row) : std::string()};
 }
 
-Block block_at(std::int64_t number, std::int64_t rows) {
-    Block block{number, {}};
+RowBlock block_at(std::int64_t number, std::int64_t rows) {
+    RowBlock block{number, {}};
     for (std::int64_t i = 0; i < rows_in_block(number, rows); ++i) {
         block.rows.push_back(row_at(number * rows_per_block + i));
     }
@@ -56,7 +56,7 @@ Block block_at(std::int64_t number, std::int64_t rows) {
 /// All that a journal holds, with numbers as bits.
 std::string dump(const Journal& journal) {
     std::string text;
-    journal.for_each_block([&](const Block& block) {
+    journal.for_each_block([&](const RowBlock& block) {
         text += "block " + std::to_string(block.number) + "\n";
         for (const Row& row : block.rows) {
             for (const Cell& cell : row) {
@@ -143,7 +143,7 @@ TEST_CASE("what is written comes back bit by bit, in block order, from a file th
     CHECK(journal.work().columns == work.columns);
     CHECK(journal.rows_wanted() == 200);
     std::int64_t row = 0;
-    journal.for_each_block([&](const Block& block) {
+    journal.for_each_block([&](const RowBlock& block) {
         CHECK(block.number * rows_per_block == row);
         for (const Row& cells : block.rows) {
             const Row expected = row_at(row++);
@@ -447,7 +447,7 @@ TEST_CASE("merging reports what is missing, takes the longer block, refuses what
     const fs::path deviant = folder.path() / "deviant.sqlite";
     {
         Journal journal(deviant, work);
-        Block block = block_at(1, 300);
+        RowBlock block = block_at(1, 300);
         block.rows[5][1] = 0.5;
         journal.write(block);
     }

@@ -264,11 +264,11 @@ std::vector<int> grid_levels(std::span<const int> fixed, std::uint64_t samples) 
 std::span<const Sampling> samplings() {
     static constexpr auto dimensions = [](const SamplingRequest& r) { return static_cast<int>(r.levels.size()); };
     static constexpr std::array table = {
-        Sampling{"sobol", "Sobol's sequence, Owen-scrambled by the seed; can be extended", true,
+        Sampling{"sobol", "Sobol's sequence, Owen-scrambled by the seed; can be extended", true, false,
                  [](const SamplingRequest& r) { return scrambled_sobol(dimensions(r), r.seed); }},
         Sampling{"lhs", "Latin hypercube: each variable cut in as many strata as samples, one sample in each", false,
-                 [](const SamplingRequest& r) { return latin_hypercube(dimensions(r), r.samples, r.seed); }},
-        Sampling{"grid", "all combinations: every value of integer variables, equally many of the others", false,
+                 false, [](const SamplingRequest& r) { return latin_hypercube(dimensions(r), r.samples, r.seed); }},
+        Sampling{"grid", "all combinations: every value of integer variables, equally many of the others", false, true,
                  [](const SamplingRequest& r) { return grid(grid_levels(r.levels, r.samples)); }},
     };
     return table;

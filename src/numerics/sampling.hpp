@@ -73,7 +73,8 @@ struct SamplingRequest {
 struct Sampling {
     std::string_view name;
     std::string_view meaning;
-    bool extendable = false;  ///< the first N rows of a longer table are those of the shorter one
+    bool extendable = false;    ///< the first N rows of a longer table are those of the shorter one
+    bool takes_levels = false;  ///< each value of an integer variable is met equally often
     std::unique_ptr<PointSet> (*make)(const SamplingRequest& request) = nullptr;
 };
 

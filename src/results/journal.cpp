@@ -209,7 +209,7 @@ struct Journal::State {
         } catch (const std::logic_error&) { refuse_corrupted(database.file(), "its entries cannot be read"); }
         Statement statement(database, "SELECT block, rows FROM blocks ORDER BY block");
         while (statement.step()) { blocks[statement.integer(0)] = statement.integer(1); }
-        journal.for_each_block([](const Block&) {});
+        journal.for_each_block([](const RowBlock&) {});
         Statement count(database, "SELECT count(*) FROM rows");
         std::int64_t rows = 0;
         for (const auto& [block, rows_here] : blocks) { rows += rows_here; }
@@ -277,7 +277,7 @@ std::vector<std::int64_t> Journal::missing_blocks(std::int64_t rows) const {
     return missing;
 }
 
-void Journal::write(const Block& block) {
+void Journal::write(const RowBlock& block) {
     if (!state_->can_write) { throw std::logic_error("journal: opened to read"); }
     const std::string name = "block " + std::to_string(block.number);
     const auto count = static_cast<std::int64_t>(block.rows.size());
@@ -321,10 +321,10 @@ void Journal::write(const Block& block) {
     state_->blocks[block.number] = count;
 }
 
-Block Journal::read(std::int64_t number) const {
+RowBlock Journal::read(std::int64_t number) const {
     const std::int64_t rows = state_->blocks.at(number);
     const Database& database = state_->database;
-    Block block{number, {}};
+    RowBlock block{number, {}};
     Statement statement(database, "SELECT * FROM rows WHERE row BETWEEN ? AND ? ORDER BY row");
     statement.bind(1, number * rows_per_block);
     statement.bind(2, (number + 1) * rows_per_block - 1);
@@ -343,7 +343,7 @@ Block Journal::read(std::int64_t number) const {
     return block;
 }
 
-void Journal::for_each_block(const std::function<void(const Block&)>& visit) const {
+void Journal::for_each_block(const std::function<void(const RowBlock&)>& visit) const {
     for (const auto& [number, rows] : state_->blocks) { visit(read(number)); }
 }
 

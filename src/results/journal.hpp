@@ -37,7 +37,7 @@ using Cell = std::variant<double, std::string>;
 using Row = std::vector<Cell>;
 
 /// Rows 64 number, 64 number + 1, ... of a table: 64 of them, fewer only in its last block.
-struct Block {
+struct RowBlock {
     std::int64_t number = 0;
     std::vector<Row> rows;
 };
@@ -75,12 +75,12 @@ public:
     /// may). Throws std::invalid_argument for a block of another shard, with no rows or more than 64, with rows that do
     /// not fit the columns, or no longer than the one stored; std::logic_error for a journal opened to read;
     /// JournalError when it cannot be written.
-    void write(const Block& block);
+    void write(const RowBlock& block);
 
     /// A stored block. Throws std::out_of_range where there is none, JournalError (corrupted).
-    [[nodiscard]] Block read(std::int64_t number) const;
+    [[nodiscard]] RowBlock read(std::int64_t number) const;
     /// Calls visit for each block by ascending number, one in memory at a time.
-    void for_each_block(const std::function<void(const Block&)>& visit) const;
+    void for_each_block(const std::function<void(const RowBlock&)>& visit) const;
 
 private:
     struct State;

@@ -18,7 +18,7 @@ bool same(const Cell& a, const Cell& b) {
 }
 
 /// As far as both have rows.
-bool agree(const Block& a, const Block& b) {
+bool agree(const RowBlock& a, const RowBlock& b) {
     const std::size_t shared = std::min(a.rows.size(), b.rows.size());
     for (std::size_t i = 0; i < shared; ++i) {
         if (!std::equal(a.rows[i].begin(), a.rows[i].end(), b.rows[i].begin(), b.rows[i].end(), same)) { return false; }
@@ -27,7 +27,7 @@ bool agree(const Block& a, const Block& b) {
 }
 
 void add_blocks(const Journal& source, Journal& target, MergeReport& report) {
-    source.for_each_block([&](const Block& block) {
+    source.for_each_block([&](const RowBlock& block) {
         const auto stored = target.blocks().find(block.number);
         const bool is_new = stored == target.blocks().end();
         if (!is_new) {
