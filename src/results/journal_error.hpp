@@ -2,6 +2,7 @@
 /// \file
 /// What can be wrong with a journal.
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>
@@ -36,7 +37,8 @@ private:
     throw JournalError(fault, file.string() + " " + rest);
 }
 
-[[noreturn]] inline void refuse_corrupted(const std::filesystem::path& file, const std::string& what) {
+[[noreturn]] inline void refuse_corrupted(const std::filesystem::path& file, std::string what) {
+    std::replace(what.begin(), what.end(), '\n', ' ');  // SQLite's account may take several lines
     refuse(JournalFault::corrupted, file,
            "is damaged (" + what + "); nothing was changed: put back a copy, or move it away to start afresh");
 }

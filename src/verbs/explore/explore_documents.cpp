@@ -183,7 +183,7 @@ std::string what_matters(const ProblemFile& problem, const std::vector<OutputSen
             if (output.figures.variables[i].first_order > output.figures.variables[most].first_order) { most = i; }
         }
         words += (words.empty() ? "Most of the variance by itself: " : "; ") + output.output + " by " +
-                 key_name(problem, most) + " (" + number(100.0 * output.figures.variables[most].first_order, 2) + " %)";
+                 key_name(problem, most) + " (" + number(100.0 * output.figures.variables[most].first_order, 3) + " %)";
     }
     return words;
 }

@@ -81,8 +81,8 @@ Outcome run(Session& session) {
     facts.ending = session.ending_of(progress.is_complete ? Ending::verified : Ending::interrupted);
     facts.is_in_a_hurry = facts.ending == Ending::interrupted;
     if (!progress.is_complete) {
-        facts.reason = "stopped early; finished blocks are kept" +
-                       std::string(passing ? " nowhere: --out is none" : ", --resume goes on with the rest");
+        facts.reason =
+            passing ? "nothing is kept: --out is none" : "finished blocks are kept, --resume goes on with the rest";
     }
     return conclude_exploration(session, exploration, journal, facts);
 }

@@ -5,7 +5,8 @@
 #include "verbs/explore/exploration_text.hpp"
 #include "verbs/explore/explore_results.hpp"
 
-#include <utility>
+#include <algorithm>
+#include <set>
 
 namespace percuss::verbs {
 
@@ -43,10 +44,30 @@ problem::ProblemFile problem_of_shards(RunSettings& settings) {
     return parse_exploration(manifest->problem, journal.work().problem, journal.rows_wanted());
 }
 
-std::string lacking_in_words(const results::MergeReport& report) {
+/// "shard 1/3, shard 2/3": those of the same division that no source is.
+std::string shards_not_given(const std::vector<std::filesystem::path>& sources) {
+    std::set<std::int64_t> given;
+    std::int64_t count = 1;
+    for (const std::filesystem::path& source : sources) {
+        const results::Shard shard = Journal(source).shard();
+        given.insert(shard.index);
+        count = std::max(count, shard.count);
+    }
+    std::string words;
+    constexpr std::int64_t enough = 10;  // so that the line can be read
+    for (std::int64_t i = 0, told = 0; i < count && told < enough; ++i) {
+        if (given.contains(i)) { continue; }
+        words += (words.empty() ? "shard " : ", shard ") + results::text_of({i, count}) + " (not given)";
+        ++told;
+    }
+    return words;
+}
+
+std::string lacking_in_words(const results::MergeReport& report, const std::vector<std::filesystem::path>& sources) {
     std::string words;
     for (const std::string& shard : report.lacking) { words += (words.empty() ? "" : ", ") + shard; }
-    if (words.empty()) { words = "shards that were not given"; }
+    const std::string others = shards_not_given(sources);
+    words += (words.empty() || others.empty() ? "" : ", ") + others;
     std::string blocks;
     for (const results::BlockRange& range : report.missing) {
         blocks += (blocks.empty() ? "" : ", ") + std::to_string(range.first) +
@@ -79,7 +100,7 @@ Outcome run(Session& session) {
     const Journal journal(target);
     ExploreFacts facts;
     facts.ending = report.is_complete() ? Ending::verified : Ending::not_certified;
-    if (!report.is_complete()) { facts.reason = lacking_in_words(report); }
+    if (!report.is_complete()) { facts.reason = lacking_in_words(report, sources); }
     return conclude_exploration(session, exploration, journal, facts);
 }
 
