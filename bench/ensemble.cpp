@@ -19,6 +19,8 @@
 // Machine: any x86-64; sets that it lacks are left out. Processor time of one thread, ratios of minima over interleaved
 // rounds in one process.
 
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "reference.hpp"
 #include "scenes.hpp"
 #include "timing.hpp"

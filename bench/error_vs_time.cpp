@@ -18,6 +18,7 @@
 //
 // Machine: any x86-64. Processor time of one thread, minima over interleaved rounds in one process.
 
+#include "model/spring/spring.hpp"
 #include "reference.hpp"
 #include "scenes.hpp"
 #include "timing.hpp"

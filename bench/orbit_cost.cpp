@@ -33,6 +33,7 @@
 
 #include "flow/sundials.hpp"
 #include "lean_membranes.hpp"
+#include "model/membrane/membrane.hpp"
 #include "orbit/orbit.hpp"
 #include "scenes.hpp"
 #include "timing.hpp"

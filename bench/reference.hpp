@@ -6,6 +6,7 @@
 #include "flow/taylor.hpp"
 #include "model/membrane/jet.hpp"
 #include "model/spring/jet.hpp"
+#include "model/spring/spring.hpp"
 #include "scenes.hpp"
 
 #include <array>

@@ -4,6 +4,7 @@
 /// and times.
 
 #include "branch/trace.hpp"
+#include "model/spring/spring.hpp"
 #include "scenes.hpp"
 #include "soft_impact_exact.hpp"
 

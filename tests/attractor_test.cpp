@@ -342,18 +342,31 @@ TEST_CASE("a budget that is too small is told, not hidden") {
     CHECK(refutation.missed_share_bound > 0.5);
 }
 
-TEST_CASE("asked to stop, an ensemble keeps the blocks that were finished") {
-    const Case c(1.78);
-    EnsembleOptions options;
+TEST_CASE("cancelled, an ensemble keeps the blocks that were finished") {
+    Case c(1.78);
+    const orbit::Orbit third = c.orbit(test::reference_orbits[5].state, 3);
+    flow::Cost cost;
+    c.exact.cost = c.scout.cost = &cost;
+    const EnsembleOptions options;
     std::atomic<int> asked{0};
-    options.cancelled = [&] { return ++asked > 12; };
+    cost.cancelled = [&] { return ++asked > 500; };  // asked once a cycle
     const Ensemble ensemble = c.motions(options);
     CHECK(ensemble.status == Ensemble::Status::cancelled);
     CHECK(ensemble.starts < 512);
     CHECK(ensemble.starts % 64 == 0);
-    const orbit::Orbit third = c.orbit(test::reference_orbits[5].state, 3);
-    options.cancelled = [] { return true; };
+    cost.cancelled = [] { return true; };
     CHECK(attractor::refute({c.exact, c.scout}, third, c.box, options).status == Refutation::Status::cancelled);
+    cost.cancelled = {};
+    EnsembleOptions threads;
+    for (const int jobs : {1, 2}) {  // the same blocks, whoever works on them
+        threads.jobs = jobs;
+        cost.step_budget = 200'000;
+        const Ensemble cut = c.motions(threads);
+        CHECK(cut.status == Ensemble::Status::budget_spent);
+        CHECK(cut.starts == 192);
+        cost.step_budget = 100;
+        CHECK(attractor::refute({c.exact, c.scout}, third, c.box, threads).status == Refutation::Status::budget_spent);
+    }
     CHECK(Ensemble{}.status == Ensemble::Status::not_run);
     CHECK(Refutation{}.status == Refutation::Status::not_run);
 }

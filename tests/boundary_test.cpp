@@ -35,13 +35,13 @@ flow::State free_state(const flow::System& system, double omega) {
     const flow::System there = system.at_omega(omega);
     const auto settled = orbit::settle(there, there.integrator->rest_state(there.parameters), 60, flow::StopMode::off);
     REQUIRE(settled.has_value());
-    const Orbit free = orbit::find_orbit(there, boundary::FreeBranch::half_cycle(), *settled);
+    const Orbit free = orbit::find_orbit(there, boundary::FreeBranch::map_of(there), *settled);
     REQUIRE(free.ok());
     return free.state;
 }
 
 Boundary grazing_near(const flow::System& system, double omega, std::span<const ParameterVector> directions = {}) {
-    return boundary::solve_boundary(system, boundary::FreeBranch::half_cycle(), Kind::grazing,
+    return boundary::solve_boundary(system, boundary::FreeBranch::map_of(system), Kind::grazing,
                                     free_state(system, omega), omega, directions);
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("grazing points of the defaults, upper and lower") {
         CHECK(std::abs(there.state[1]) < 1e-7);  // the phase of a maximum: half the digits
     }
     // It belongs to the free orbit: no trace of the stop's stiffness and damping.
-    check_derivatives(system, boundary::FreeBranch::half_cycle(), Kind::grazing, upper,
+    check_derivatives(system, boundary::FreeBranch::map_of(system), Kind::grazing, upper,
                       {model::membrane::gap, model::membrane::voltage, model::membrane::delta_a,
                        model::membrane::length, model::membrane::layers, model::membrane::alpha_a},
                       1e-7);
@@ -231,7 +231,7 @@ TEST_CASE("torus point of a free motion with low losses") {
     REQUIRE(edge.status == boundary::EdgeStatus::found);
     CHECK(edge.boundary.kind == Kind::grazing);
     CHECK(edge.boundary.omega > 1.85);
-    const ReturnMap half = boundary::FreeBranch::half_cycle();
+    const ReturnMap half = boundary::FreeBranch::map_of(system);
     const Boundary torus = boundary::solve_boundary(system, half, Kind::torus, free_state(system, 1.81), 1.80, {});
     REQUIRE(torus.ok());
     CHECK(std::abs(torus.omega - 1.79) < 0.01);  // "near 1.79"

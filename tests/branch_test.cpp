@@ -157,7 +157,7 @@ TEST_CASE("the hysteresis map of the defaults: one branch through both grazing p
 }
 
 TEST_CASE("the same map the other way round, and without the stop") {
-    for (const auto law : {model::StopLaw::kelvin_voigt, model::StopLaw::no_tension}) {
+    for (const auto law : {model::ContactLaw::kelvin_voigt, model::ContactLaw::no_tension}) {
         verbs::StudyProblem problem = paper();
         problem.design.actuator.law = law;
         const auto down = map_of(problem, 4.0, 1.2);
@@ -177,7 +177,7 @@ TEST_CASE("the same map the other way round, and without the stop") {
         CHECK(a.boundaries[0].point.omega == relative(reference::grazing_upper, 6e-12));
     }
     verbs::StudyProblem free = paper();
-    free.design.actuator.law = model::StopLaw::none;
+    free.design.actuator.law = model::ContactLaw::none;
     const auto alone = map_of(free, 4.0, 1.2);
     CHECK(alone.ending == verbs::Ending::verified);
     CHECK(alone.branches.at(0).boundaries.empty());
@@ -373,9 +373,9 @@ TEST_CASE("twice the period leaves at the flip and comes back to the branch it l
 
 TEST_CASE("along a design variable: an S-curve in the voltage, and orbits solved one by one") {
     verbs::StudyProblem problem = paper();
-    problem.design.actuator.set(Key::nd_omega, 1.9);
+    problem.design.actuator.set(model::membrane::key::nd_omega, 1.9);
     verbs::BranchOptions study;
-    study.along = Key::nd_voltage;
+    study.along = model::membrane::key::nd_voltage;
     study.from = 0.1;
     study.to = 0.6;
     const auto result = map_of(problem, study);
@@ -391,7 +391,7 @@ TEST_CASE("along a design variable: an S-curve in the voltage, and orbits solved
     for (const BoundaryPoint& found : s.boundaries) {
         CAPTURE(boundary::to_string(found.kind));
         verbs::StudyProblem there = paper();
-        there.design.actuator.set(Key::nd_voltage, found.point.parameter);
+        there.design.actuator.set(model::membrane::key::nd_voltage, found.point.parameter);
         const auto across = map_of(there, 3.0, 1.7);
         CHECK(nearest(across.branches.at(0), found.kind, 1.9).point.omega == relative(1.9, 1e-10));
     }
@@ -424,9 +424,9 @@ TEST_CASE("along a design variable: an S-curve in the voltage, and orbits solved
 TEST_CASE("without damping there are no torus points and no stable motions") {
     for (const char* name : {"duffing", "soft-impact"}) {
         CAPTURE(name);
-        study::StudyProblem problem = test::shipped_problem(name);
-        problem.design.actuator.set(Key::sm_damping, 0.0);
-        study::BranchStudy study;
+        verbs::StudyProblem problem = test::shipped_problem(name);
+        problem.design.actuator.set(model::spring::key::damping, 0.0);
+        verbs::BranchOptions study;
         study.max_points = 300;
         const Branch branch = map_of(problem, study).branches.at(0);
         CHECK(branch.neutral());
@@ -440,23 +440,23 @@ TEST_CASE("without damping there are no torus points and no stable motions") {
 }
 
 TEST_CASE("far below resonance, among folds less than a step apart, near is not closed") {
-    study::StudyProblem problem = test::shipped_problem("soft-impact");
+    verbs::StudyProblem problem = test::shipped_problem("soft-impact");
     model::Specification& spec = problem.design.actuator;
-    spec.set(Key::sm_mass, 5e-3);
-    spec.set(Key::sm_stiffness, 1263.0);
-    spec.set(Key::sm_damping, 0.05);
-    spec.set(Key::sm_force, 0.2);
+    spec.set(model::spring::key::mass, 5e-3);
+    spec.set(model::spring::key::stiffness, 1263.0);
+    spec.set(model::spring::key::damping, 0.05);
+    spec.set(model::spring::key::force, 0.2);
     spec.set(Key::stop_gap, 1e-4);
     spec.set(Key::stop_stiffness, 5e5);
     spec.set(Key::stop_damping, 0.5);
-    study::BranchStudy study;
+    verbs::BranchOptions study;
     study.from = 10.0;
     study.max_points = 400;
     // The branch sets out at an end of the range: a closed one would have had to leave it. Up to its 191st point it
     // only comes near its first.
     const auto result = map_of(problem, study);
     CHECK(result.branches.at(0).end == End::budget);
-    CHECK(result.ending == study::Ending::budget);
+    CHECK(result.ending == verbs::Ending::budget);
 }
 
 TEST_CASE("what ends a branch, and what cannot be begun") {
@@ -478,10 +478,10 @@ TEST_CASE("what ends a branch, and what cannot be begun") {
     empty.to = 2.0;
     CHECK_THROWS_AS(map_of(paper(), empty), std::invalid_argument);
     verbs::BranchOptions no_range;
-    no_range.along = Key::nd_gap;
+    no_range.along = model::membrane::key::nd_gap;
     CHECK_THROWS_AS(map_of(paper(), no_range), std::invalid_argument);
     verbs::BranchOptions foreign;
-    foreign.along = Key::sm_force;
+    foreign.along = model::spring::key::force;
     foreign.from = 0.1;
     foreign.to = 0.2;
     CHECK_THROWS_AS(map_of(paper(), foreign), std::invalid_argument);

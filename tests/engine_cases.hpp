@@ -4,6 +4,7 @@
 
 #include "flow/flow.hpp"
 #include "kernels/kernels.hpp"
+#include "model/coil/coil.hpp"
 #include "model/membrane/membrane.hpp"
 #include "model/spring/spring.hpp"
 #include "reference_values.hpp"

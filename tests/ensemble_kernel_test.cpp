@@ -48,6 +48,10 @@ const ParameterVector rattling = {0.1, 1.0, 0.3, 2.0, 0.4, 200.0, 1.0, 0.3};
 const ParameterVector undamped_stop = test::with(rattling, model::spring::stop_damping, 0.0);
 const ParameterVector overdamped_stop = test::with(rattling, model::spring::stop_damping, 40.0);
 
+constexpr const model::Scene* coil = &model::coil::scene;
+// c k1 k3 rho beta V gap k delta_i omega
+const ParameterVector rattling_coil = {0.1, 1.0, 0.3, 12.0, 2.0, 24.0, 0.4, 200.0, 1.0, 0.3};
+
 const std::vector<Scene> scenes = {
     {"membranes", membranes, ContactLaw::kelvin_voigt, impacting, 2.0, StopMode::hybrid, 30},
     {"membranes at the reference frequency", membranes, ContactLaw::kelvin_voigt, paper_defaults, 1.3},
@@ -64,6 +68,9 @@ const std::vector<Scene> scenes = {
     {"spring, undamped", spring, ContactLaw::kelvin_voigt, undamped_stop, 2.0, StopMode::hybrid, 150},
     {"spring, no stop", spring, ContactLaw::none, rattling, 2.0, StopMode::hybrid, 0},
     {"spring, stop off", spring, ContactLaw::kelvin_voigt, rattling, 2.0, StopMode::off, 0},
+    {"coil", coil, ContactLaw::kelvin_voigt, rattling_coil, 2.0, StopMode::hybrid, 150},
+    {"coil, no tension", coil, ContactLaw::no_tension, rattling_coil, 2.0, StopMode::hybrid, 150},
+    {"coil, stop off", coil, ContactLaw::kelvin_voigt, rattling_coil, 2.0, StopMode::off, 0},
 };
 
 std::unique_ptr<flow::Integrator> integrator(const Scene& scene, double tolerance = 1e-13,

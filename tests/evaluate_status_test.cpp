@@ -7,6 +7,7 @@
 #include "model/membrane/membrane.hpp"
 #include "orbit/orbit.hpp"
 #include "relative.hpp"
+#include "shipped_problem.hpp"
 
 #include <doctest/doctest.h>
 
@@ -55,7 +56,7 @@ TEST_CASE("low losses: the free motion leans left and folds; the tip of such a r
     while (branch.current().omega > 3.0 && folds.size() < 2 && branch.advance()) {
         if (branch.previous().omega_slope * branch.current().omega_slope >= 0.0) { continue; }
         const boundary::Boundary fold =
-            boundary::solve_boundary(free.system, boundary::FreeBranch::half_cycle(), boundary::Kind::fold,
+            boundary::solve_boundary(free.system, boundary::FreeBranch::map_of(free.system), boundary::Kind::fold,
                                      branch.current().state, branch.current().omega, {});
         REQUIRE(fold.ok());
         folds.push_back(fold.omega);
@@ -259,4 +260,37 @@ TEST_CASE("given frequencies: the motion from rest, and what stands beside it") 
     const Specification one = changed(problem.actuator, {{percuss::model::membrane::key::nd_omega, 1.9}});
     const std::vector<double> start(test::reference_orbits[0].state.begin(), test::reference_orbits[0].state.end());
     CHECK(evaluator.orbit(one, start, 2, everything(one)).orbit.period == 1);
+}
+
+TEST_CASE("rest means rest: an orbit that Newton's method finds from an early transient is not what rest leads to") {
+    namespace key = model::spring::key;
+    design::Problem problem = test::shipped_problem("soft-impact").design;
+    problem.actuator.law = model::ContactLaw::no_tension;
+    const Changes soft = {{Key::stop_gap, 0.133146}, {Key::stop_stiffness, 892.331}, {key::damping, 0.0137409},
+                          {key::cubic, -0.0116969},  {key::force, 0.505446},         {key::omega, 2.116423}};
+    problem.actuator = changed(problem.actuator, soft);
+    const design::Evaluator evaluator(problem);
+    // The orbit is there, stable, and a start on it stays.
+    const std::vector<double> on_it = {-0.231106797445, 0.00352690949048};
+    const Evaluation orbit = evaluator.orbit(problem.actuator, on_it, 1, everything(problem.actuator));
+    REQUIRE(orbit.status == EvaluationStatus::ok);
+    CHECK(orbit.value(Quantity::peak_force) == test::relative(2.86222, 1e-5));
+    // The motion from rest goes on far from it, as its forces tell after thousands of cycles.
+    const model::Scaled scaled = model::scale(problem.actuator);
+    const auto integrator = test::spring(model::ContactLaw::no_tension, 1e-11);
+    flow::Request request;
+    request.state = integrator->rest_state(scaled.parameters);
+    request.duration = test::two_pi * 6000.0;
+    request.max_events = 1000000;
+    request.max_steps = 10000000;
+    flow::Result result = test::run(*integrator, scaled.parameters, request);
+    REQUIRE(result.status == flow::Status::ok);
+    request.state = result.state;
+    request.duration = test::two_pi * 20.0;
+    request.observe = flow::observe_force;
+    result = test::run(*integrator, scaled.parameters, request);
+    CHECK(scaled.scales.force * result.observables.peak_force.value > 20.0);
+    const Evaluation from_rest = evaluator.evaluate(everything(problem.actuator));
+    CHECK(from_rest.status == EvaluationStatus::unstable);
+    CHECK(from_rest.reason.find("has not contracted") != std::string::npos);
 }

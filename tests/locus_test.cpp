@@ -66,7 +66,8 @@ double on_main_branch(verbs::StudyProblem problem, Kind kind, Key key, double va
 
 TEST_CASE("the published fold curve of the soft stop") {
     const auto problem = test::shipped_problem("soft-impact");
-    const auto result = follow(problem, Kind::fold, Key::sm_force, test::soft_impact::parameters[3], 0.5, 35);
+    const auto result =
+        follow(problem, Kind::fold, model::spring::key::force, test::soft_impact::parameters[3], 0.5, 35);
     CHECK(result.ending == verbs::Ending::verified);
     REQUIRE(result.curves.size() == 2);  // the fold beside grazing, and the one far up
     const Locus& upper = result.curves[1];
@@ -88,7 +89,7 @@ TEST_CASE("the published fold curve of the soft stop") {
 
 TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from either side") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
-    const auto down = follow(problem, Kind::fold, Key::nd_voltage, 0.5, 0.15);
+    const auto down = follow(problem, Kind::fold, model::membrane::key::nd_voltage, 0.5, 0.15);
     CHECK(down.ending == verbs::Ending::verified);
     REQUIRE(down.curves.size() == 1);  // the second fold is the end of the first one's curve
     const Locus& curve = down.curves[0];
@@ -123,7 +124,7 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
     CHECK(up.curves[0].turns[0].value == relative(cusp.value, 1e-10));
     CHECK(up.curves[0].turns[0].omega == relative(cusp.omega, 1e-7));
     // Below the cusp nothing folds.
-    const auto none = follow(problem, Kind::fold, Key::nd_voltage, 0.19, 0.15);
+    const auto none = follow(problem, Kind::fold, model::membrane::key::nd_voltage, 0.19, 0.15);
     CHECK(none.ending == verbs::Ending::infeasible);
     CHECK(none.curves.empty());
     CHECK_FALSE(none.reason.empty());
@@ -131,7 +132,7 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
 
 TEST_CASE("grazing and flip curves lie where the branches have them") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
-    const auto grazing = follow(problem, Kind::grazing, Key::nd_gap, 0.1, 0.2, 10);
+    const auto grazing = follow(problem, Kind::grazing, model::membrane::key::nd_gap, 0.1, 0.2, 10);
     CHECK(grazing.ending == verbs::Ending::verified);
     REQUIRE(!grazing.curves.empty());
     for (const auto& gap : {0.12, 0.15}) {
@@ -165,11 +166,11 @@ TEST_CASE("grazing and flip curves lie where the branches have them") {
 TEST_CASE("a torus curve") {
     auto problem = test::shipped_problem("wu2022-nondimensional");
     model::Specification& spec = problem.design.actuator;
-    spec.law = model::StopLaw::none;
-    spec.set(Key::nd_voltage, 0.232);
-    spec.set(Key::nd_delta_a, 0.022);
-    spec.set(Key::nd_delta_b, 390.0);
-    const auto torus = follow(problem, Kind::torus, Key::nd_delta_a, 0.022, 0.024, 10);
+    spec.law = model::ContactLaw::none;
+    spec.set(model::membrane::key::nd_voltage, 0.232);
+    spec.set(model::membrane::key::nd_delta_a, 0.022);
+    spec.set(model::membrane::key::nd_delta_b, 390.0);
+    const auto torus = follow(problem, Kind::torus, model::membrane::key::nd_delta_a, 0.022, 0.024, 10);
     CHECK(torus.ending == verbs::Ending::verified);
     REQUIRE(!torus.curves.empty());
     const LocusPoint& there = at_value(torus.curves[0], 0.023, 1.79);
@@ -220,8 +221,8 @@ TEST_CASE("families move their parameters as their directions say") {
     }
     CHECK_THROWS_WITH_AS(design::key_family(system, spec, percuss::model::membrane::key::nd_gap, 1.0),
                          doctest::Contains("nondimensional.g"), std::invalid_argument);
-    CHECK(design::is_drive_frequency(percuss::model::spring::key::omega));
-    CHECK_FALSE(design::is_drive_frequency(Key::stop_gap));
+    CHECK(model::is_frequency(percuss::model::spring::key::omega));
+    CHECK_FALSE(model::is_frequency(Key::stop_gap));
 }
 
 TEST_CASE("misuse and early ends") {

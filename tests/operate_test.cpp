@@ -2,8 +2,9 @@
 // early.
 
 #include "design/operating_point.hpp"
+#include "model/membrane/membrane.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "design_cases.hpp"
 #include "relative.hpp"
 
@@ -29,7 +30,7 @@ namespace {
 /// A design with all that operate() asks for.
 struct Ready {
     design::Problem problem;
-    design::Scene scene = design::make_scene(problem);
+    design::Integrators scene = design::make_integrators(problem);
     model::Scaled scaled = model::scale(problem.actuator);
 
     explicit Ready(const test::Changes& changes) : problem(nondimensional()) {
@@ -48,7 +49,7 @@ struct Ready {
 }  // namespace
 
 TEST_CASE("a given frequency is taken as it is") {
-    const Ready ready({{Key::nd_omega, 1.9}});
+    const Ready ready({{model::membrane::key::nd_omega, 1.9}});
     const Operation operation = ready.operate();
     REQUIRE(operation.found());
     CHECK(operation.point.omega == 1.9);
@@ -68,7 +69,7 @@ TEST_CASE("below an edge: the margin is kept, and the derivative of the frequenc
     options.margin = 0.02;
     options.find_neighbours = true;
     const std::vector<flow::ParameterVector> directions = {
-        model::scale_derivative(ready.problem.actuator, Key::nd_gap).parameters};
+        model::scale_derivative(ready.problem.actuator, model::membrane::key::nd_gap).parameters};
     options.directions = directions;
     const Operation operation = ready.operate(options);
     REQUIRE(operation.found());
@@ -81,10 +82,10 @@ TEST_CASE("below an edge: the margin is kept, and the derivative of the frequenc
     CHECK(operation.free_orbits);
     // Central difference over 2e-5 of the gap: the error of the edge (1e-12) and the curvature leave 1e-6.
     REQUIRE(operation.d_omega.size() == 1);
-    const double gap = ready.problem.actuator.value(Key::nd_gap);
+    const double gap = ready.problem.actuator.value(model::membrane::key::nd_gap);
     const double step = 1e-5 * gap;
-    const double above = Ready({{Key::nd_gap, gap + step}}).operate(options).point.omega;
-    const double below = Ready({{Key::nd_gap, gap - step}}).operate(options).point.omega;
+    const double above = Ready({{model::membrane::key::nd_gap, gap + step}}).operate(options).point.omega;
+    const double below = Ready({{model::membrane::key::nd_gap, gap - step}}).operate(options).point.omega;
     CHECK(operation.d_omega[0] == test::relative((above - below) / (2.0 * step), 1e-6));
     // The motion there is the one that strikes.
     const Reached reached = design::reach_motion(operation);
@@ -93,15 +94,15 @@ TEST_CASE("below an edge: the margin is kept, and the derivative of the frequenc
 }
 
 TEST_CASE("no edge: a status with its reason and no frequency; without a stop there is nothing to have an edge with") {
-    const Operation operation = Ready({{Key::nd_voltage, 0.195}}).operate();
+    const Operation operation = Ready({{model::membrane::key::nd_voltage, 0.195}}).operate();
     CHECK(operation.status == OperationStatus::no_impact);
     CHECK(operation.reason.find("every drive frequency") != std::string::npos);
     CHECK(std::isnan(operation.point.omega));
     CHECK_FALSE(operation.edge);
 
     Ready free({});
-    free.problem.actuator.law = model::StopLaw::none;
-    free.scene = design::make_scene(free.problem);
+    free.problem.actuator.law = model::ContactLaw::none;
+    free.scene = design::make_integrators(free.problem);
     CHECK_THROWS_WITH_AS((void)free.operate(), "drive.frequency = edge needs a stop: stop.law is none",
                          std::invalid_argument);
 }

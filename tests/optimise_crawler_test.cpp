@@ -23,14 +23,14 @@ using design::Limit;
 using design::Quantity;
 using model::Key;
 using model::Specification;
-using verbs::OptimiseStudyResult;
+using verbs::OptimiseResult;
 
 namespace {
 
 /// The optimisation, run once for all test cases.
 struct Solved {
     verbs::StudyProblem problem = test::shipped_problem("crawler");
-    OptimiseStudyResult result = verbs::run_optimise(problem, nullptr, {}, {});
+    OptimiseResult result = verbs::run_optimise(problem, nullptr, {}, {});
 };
 const Solved& solved() {
     static const Solved once;
@@ -62,7 +62,7 @@ double value_of(const std::vector<std::pair<Key, double>>& design, Key wanted) {
 }  // namespace
 
 TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
-    const OptimiseStudyResult& r = solved().result;
+    const OptimiseResult& r = solved().result;
     INFO(r.reason);
     MESSAGE("peak force ", r.best.value(Quantity::peak_force), " N, KKT residual ", r.kkt_residual, ", ", r.evaluations,
             " evaluations, ", r.seconds, " s");
@@ -159,7 +159,7 @@ TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions,
 TEST_CASE("a multiplier is what a wider limit gains") {
     verbs::StudyProblem problem = solved().problem;
     REQUIRE(solved().result.status == verbs::OptimiseStatus::optimal);
-    problem.design.actuator.set(Key::layers, 3.0);
+    problem.design.actuator.set(model::membrane::key::layers, 3.0);
     std::erase_if(problem.design.variables, [](const design::DesignVariable& v) { return v.integer; });
     const verbs::LimitReport* active = nullptr;
     std::size_t which = 0;
@@ -176,7 +176,7 @@ TEST_CASE("a multiplier is what a wider limit gains") {
     std::array<double, 2> force{};
     for (int side = 0; side < 2; ++side) {
         problem.design.limits[which].bound = active->limit + (side == 0 ? -change : change);
-        const OptimiseStudyResult r = verbs::run_optimise(problem, nullptr, {}, {});
+        const OptimiseResult r = verbs::run_optimise(problem, nullptr, {}, {});
         INFO(r.reason);
         REQUIRE(r.status == verbs::OptimiseStatus::optimal);
         CHECK(r.per_layers.size() == 1);

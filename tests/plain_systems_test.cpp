@@ -1,5 +1,6 @@
 // The point-by-point equations of motion: exact derivatives, power balance, symmetry, rest and resonance.
 
+#include "model/coil/coil.hpp"
 #include "model/membrane/membrane.hpp"
 #include "model/spring/spring.hpp"
 #include "sundials_cases.hpp"
@@ -94,6 +95,8 @@ void check_derivatives(const Point& point) {
 TEST_CASE("derivatives of the equations of motion agree with differences") {
     check_derivatives({test::membranes(), test::paper_defaults});
     check_derivatives({test::spring(), spring_parameters});
+    check_derivatives({kernels::make_plain_system(model::coil::scene, model::ContactLaw::kelvin_voigt),
+                       {0.1, 1.3, 0.4, 9.0, 2.0, 7.0, 0.2, 40.0, 1.5, 0.9}});
 }
 
 TEST_CASE("eight directions at once give what one at a time gives") {

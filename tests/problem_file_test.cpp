@@ -1,3 +1,5 @@
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "problem/nearest_name.hpp"
 #include "problem/problem_error.hpp"
 #include "problem/problem_file.hpp"
@@ -127,7 +129,7 @@ TEST_CASE("the shipped oscillators are the published ones") {
     CHECK(soft[model::spring::force] == 0.152380952381);
     CHECK(soft[model::spring::stop_stiffness] == 29.0);
     const ProblemFile duffing = verbs::read_problem(shipped("duffing.ini"), {});
-    CHECK(duffing.design.actuator.law == model::StopLaw::none);
+    CHECK(duffing.design.actuator.law == model::ContactLaw::none);
     const auto scaled = model::scale(duffing.design.actuator);
     CHECK(scaled.parameters[model::spring::omega] == doctest::Approx(1.2).epsilon(1e-15));
     CHECK(scaled.parameters[model::spring::cubic] == doctest::Approx(0.1 * 0.18 * 0.18).epsilon(1e-15));
@@ -136,14 +138,14 @@ TEST_CASE("the shipped oscillators are the published ones") {
 TEST_CASE("options win over the file") {
     const ProblemFile problem =
         read(nondimensional + "omega = 1.9\n", {option("nondimensional.omega", "2.2"), option("drive.margin", "0")});
-    CHECK(problem.design.actuator.value(Key::nd_omega) == 2.2);
+    CHECK(problem.design.actuator.value(model::membrane::key::nd_omega) == 2.2);
     CHECK(problem.design.margin == 0.0);
     CHECK_FALSE(model::has_frequency(
         read(nondimensional + "omega = 1.9\n", {option("nondimensional.omega", "edge")}).design.actuator));
     // The two ways to give the frequency of an oscillator replace each other.
     const ProblemFile oscillator = read(spring + "[drive]\nfrequency = 50 Hz\n", {option("spring-mass.omega", "300")});
     CHECK_FALSE(oscillator.design.actuator.has(Key::drive_frequency));
-    CHECK(oscillator.design.actuator.value(Key::sm_omega) == 300.0);
+    CHECK(oscillator.design.actuator.value(model::spring::key::omega) == 300.0);
 }
 
 TEST_CASE("repeatable options add to the list of the file or replace their entry in it") {
@@ -177,9 +179,8 @@ TEST_CASE("repeatable options add to the list of the file or replace their entry
 }
 
 TEST_CASE("comments, and the origin of what stands in lists") {
-    CHECK(
-        read(nondimensional + "; a comment\nomega = 1.9 ; and another # one\n").design.actuator.value(Key::nd_omega) ==
-        1.9);
+    CHECK(read(nondimensional + "; a comment\nomega = 1.9 ; and another # one\n")
+              .design.actuator.value(model::membrane::key::nd_omega) == 1.9);
     const std::string text = spring + "[design]\nlimit = amplitude <= 1 mm\n";
     const ProblemFile problem = read(text, {option("design.limit", "impulse <= 3 mN s")});
     std::vector<problem::Origin> origins;
@@ -191,8 +192,8 @@ TEST_CASE("comments, and the origin of what stands in lists") {
 
 TEST_CASE("defaults are filled in") {
     const ProblemFile problem = read(nondimensional);
-    CHECK(problem.design.actuator.value(Key::nd_layers) == 1.0);
-    CHECK(problem.design.actuator.law == model::StopLaw::kelvin_voigt);
+    CHECK(problem.design.actuator.value(model::membrane::key::nd_layers) == 1.0);
+    CHECK(problem.design.actuator.law == model::ContactLaw::kelvin_voigt);
     const verbs::OptimiserOptions defaults;
     CHECK(problem.get<verbs::OptimiserOptions>().method == defaults.method);
     CHECK(problem.get<verbs::OrbitOptions>().period == 1);
@@ -204,7 +205,7 @@ TEST_CASE("a variable without a value starts in the middle of its range") {
                              "variable = spring-mass.stiffness in 1 .. 100 log\nvariable = stop.gap in 1 mm .. 3 mm\n"
                              "variable = stop.stiffness in 1 .. 4 integer\n";
     const auto& spec = read(text).design.actuator;
-    CHECK(spec.value(Key::sm_stiffness) == doctest::Approx(10.0).epsilon(1e-14));
+    CHECK(spec.value(model::spring::key::stiffness) == doctest::Approx(10.0).epsilon(1e-14));
     CHECK(spec.value(Key::stop_gap) == doctest::Approx(2e-3).epsilon(1e-14));
     CHECK(spec.value(Key::stop_stiffness) == 2.0);
 }
@@ -359,8 +360,8 @@ TEST_CASE("the hash tells problems apart and units and spelling do not matter") 
 }
 
 TEST_CASE("every key has its line in the table") {
-    for (std::size_t i = 0; i < model::key_count; ++i) {
-        CHECK(problem::find_row(verbs::sections(), model::key_info(static_cast<Key>(i)).name) != nullptr);
+    for (const Key key : model::all_keys()) {
+        CHECK(problem::find_row(verbs::sections(), model::key_info(key).name) != nullptr);
     }
     CHECK(problem::find_row(verbs::sections(), "design.limit")->repeatable());
     CHECK(problem::find_row(verbs::sections(), "stop.gapp") == nullptr);

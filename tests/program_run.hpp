@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,22 @@ inline Outcome run(const ScratchFolder& folder, const std::vector<std::string>& 
 
 inline std::string shipped(const std::string& name) {
     return (std::filesystem::absolute(environment("PERCUSS_SOURCE_DIR", ".")) / "problems" / name).string();
+}
+
+/// The folder in results/ that a run without --out has left: its name, and six digits of the problem's hash behind it
+/// where options changed the problem. Fails where there is none, or more than one.
+inline std::filesystem::path results_of(const ScratchFolder& folder, const std::string& name) {
+    std::vector<std::filesystem::path> found;
+    const std::filesystem::path all = folder.path() / "results";
+    if (std::filesystem::exists(all)) {
+        for (const auto& entry : std::filesystem::directory_iterator(all)) {
+            const std::string own = entry.path().filename().string();
+            const bool with_hash = own.size() == name.size() + 7 && own.starts_with(name + "-");
+            if (own == name || with_hash) { found.push_back(entry.path()); }
+        }
+    }
+    if (found.size() != 1) { throw std::runtime_error(std::to_string(found.size()) + " results folders of " + name); }
+    return found.front();
 }
 
 inline long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }

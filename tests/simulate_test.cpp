@@ -25,7 +25,7 @@ using std::numbers::pi;
 
 verbs::StudyProblem at_omega(double omega) {
     verbs::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
-    problem.design.actuator.set(model::Key::nd_omega, omega);
+    problem.design.actuator.set(model::membrane::key::nd_omega, omega);
     return problem;
 }
 
@@ -228,14 +228,14 @@ TEST_CASE("the motion without the kick goes on from the phase of the kick") {
 
 TEST_CASE("a motion of several cycles is the same from each of its strobed states") {
     const verbs::StudyProblem problem = at_omega(1.78);
-    const design::Scene scene = design::make_scene(problem.design);
+    const design::Integrators scene = design::make_integrators(problem.design);
     const model::Scaled scaled = model::scale(problem.design.actuator);
     const flow::System system{scene.own.get(), scaled.parameters, nullptr};
     const flow::State first = test::reference_orbits[5].state;
     const auto later = orbit::settle(system, first, 1);
     REQUIRE(later);
-    const verbs::Motion one = verbs::identify_motion(system, first, scaled.scales);
-    const verbs::Motion two = verbs::identify_motion(system, *later, scaled.scales);
+    const verbs::SettledMotion one = verbs::identify_motion(system, first, scaled.scales);
+    const verbs::SettledMotion two = verbs::identify_motion(system, *later, scaled.scales);
     REQUIRE(one.period == 3);
     CHECK(one.polished);
     CHECK(one.peak_force == doctest::Approx(test::reference_orbits[5].peak_force).epsilon(1e-8));
@@ -244,7 +244,8 @@ TEST_CASE("a motion of several cycles is the same from each of its strobed state
     CHECK(verbs::same_motion(system, two, one));
     const orbit::Orbit single = orbit::polish_orbit(system, orbit_at_1_9, 1);
     REQUIRE(single.ok());
-    const verbs::Motion other = verbs::identify_motion(system, orbit::state_at_zero(system, single), scaled.scales);
+    const verbs::SettledMotion other =
+        verbs::identify_motion(system, orbit::state_at_zero(system, single), scaled.scales);
     REQUIRE(other.settled);
     CHECK(other.period == 1);
     CHECK_FALSE(verbs::same_motion(system, one, other));
@@ -268,7 +269,7 @@ TEST_CASE("starts: an orbit at the edge, a given one, rest; no edge without impa
     REQUIRE(polished.ending == verbs::Ending::verified);
     for (std::size_t k = 0; k < 4; ++k) { CHECK(std::abs(polished.start[k] - upper_branch[k]) < 1e-10); }
 
-    problem.design.actuator.set(model::Key::nd_voltage, 0.1);
+    problem.design.actuator.set(model::membrane::key::nd_voltage, 0.1);
     const auto weak = simulated(problem, SimulateOptions{});
     CHECK(weak.ending == verbs::Ending::infeasible);
     CHECK_FALSE(weak.reason.empty());
@@ -289,7 +290,7 @@ TEST_CASE("the program simulates, with units, and tells what a kick did") {
     CHECK(document.at("outcome") == "recovered");
     CHECK(document.at("after").at("polished") == true);
     CHECK(document.at("after").at("state").size() == 4);
-    const auto results = folder.path() / "results" / "wu2022-actuator-simulate";
+    const auto results = results_of(folder, "wu2022-actuator-simulate");
     const std::string series = read_file(results / "series.csv");
     CHECK(series.starts_with("time [s],cycle,phase [rad],x [m],x' [m/s],xi_I,xi_II,stop_force [N],voltage_I [V],"
                              "voltage_II [V]\n0,0,0,0.0025,0,"));

@@ -1,6 +1,7 @@
 // ARKODE and CVODES on motions that are known: the reference orbit of the actuator, published multipliers, closed
 // forms.
 
+#include "model/membrane/membrane.hpp"
 #include "numerics/linear.hpp"
 #include "sundials_cases.hpp"
 

@@ -81,7 +81,8 @@ TEST_CASE("kernels of all instruction sets agree, and so do those for few and ma
     const std::vector<Scene> scenes = {
         {&model::membrane::viscous, paper_defaults, test::reference_orbits[0].state},
         {&model::membrane::elastic, test::with(paper_defaults, model::membrane::mu_ratio, 0.0), {0.4, 0.35}},
-        {&model::spring::scene, {0.1, 1.0, 0.3, 0.5, 0.4, 200.0, 1.0, 1.1}, {0.2, 0.5}}};
+        {&model::spring::scene, {0.1, 1.0, 0.3, 0.5, 0.4, 200.0, 1.0, 1.1}, {0.2, 0.5}},
+        {&model::coil::scene, {0.1, 1.0, 0.3, 12.0, 2.0, 8.0, 0.4, 200.0, 1.0, 1.1}, {0.2, 0.5, 0.3}}};
     CHECK(kernels::instruction_sets().size() >= 1);
     CHECK(kernels::instruction_set_in_use("auto") == kernels::instruction_sets().back());
     for (const Scene& scene : scenes) {

@@ -50,7 +50,7 @@ double amplitude(const Evaluation& e) { return e.value(Quantity::amplitude); }
 
 TEST_CASE("figure 6a: without the stop both sweeps are one curve") {
     verbs::StudyProblem problem = test::shipped_problem("wu2022-fig6");
-    problem.design.actuator.law = model::StopLaw::none;
+    problem.design.actuator.law = model::ContactLaw::none;
     const verbs::SweepResult sweep = verbs::run_sweep(problem, {.from = 1.2, .to = 3.0, .steps = 45}, nullptr, {}, {});
     CHECK(sweep.ending == verbs::Ending::verified);
     CHECK(sweep.comparison.compared == 46);
@@ -116,7 +116,8 @@ TEST_CASE("figure 7: the edge followed through the onset and on to the lower end
         CAPTURE(from);
         const verbs::LocusResult locus = verbs::run_locus(
             test::shipped_problem("wu2022-fig7"),
-            {.kind = boundary::Kind::grazing, .along = Key::nd_voltage, .from = from, .to = 0.19}, {}, {});
+            {.kind = boundary::Kind::grazing, .along = model::membrane::key::nd_voltage, .from = from, .to = 0.19}, {},
+            {});
         REQUIRE(locus.curves.size() == 1);  // one curve: both grazing points it could begin with are on it
         const branch::Locus& curve = locus.curves[0];
         CHECK(curve.end == branch::End::range);

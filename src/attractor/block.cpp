@@ -1,6 +1,7 @@
 #include "attractor/block.hpp"
 
 #include "attractor/box.hpp"
+#include "attractor/counted_systems.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -27,19 +28,16 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 int next_look(int cycle) { return cycle < evenly_until ? cycle + first_look : cycle + cycle / 2; }
 
-class BlockRun {
+class BlockFollower {
 public:
-    BlockRun(const Systems& systems, const Box& box, std::span<const flow::State> starts, const KnownOrbits& known,
-             const FollowOptions& options)
-        : exact_{systems.exact},
-          scout_{systems.scout},
+    BlockFollower(const Systems& systems, const Box& box, std::span<const flow::State> starts, const KnownOrbits& known,
+                  const FollowOptions& options)
+        : counted_(systems),
           options_(options),
           scale_(distance_scale(systems.exact, box)),
           known_before_(known.size()),
           known_(known) {
         for (const auto& orbit : known_) { traps_.push_back(&orbit->trap); }
-        exact_.cost = &cost_;
-        scout_.cost = &cost_;
         result_.followers.resize(starts.size());
         tracks_.resize(starts.size());
         for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -49,19 +47,17 @@ public:
         }
     }
 
-    BlockResult run() {
+    BlockResult follow() {
         int look = first_look;
         int cycle = 0;
         while (!live_.empty() && cycle < more_for_creeping * options_.max_cycles) {
             advance();
+            if (cut_short()) { break; }
             ++cycle;
             if (cycle >= options_.max_cycles && (cycle - options_.max_cycles) % options_.memory == 0) { retire(); }
             if (cycle < look) { continue; }
-            if (options_.cancelled && options_.cancelled()) {
-                result_.cancelled = true;
-                break;
-            }
             search();
+            if (cut_short()) { break; }
             if (options_.end_at_new && known_.size() > known_before_) { break; }
             look = next_look(cycle);
         }
@@ -79,6 +75,12 @@ private:
         std::size_t start = 0;
     };
 
+    /// Whether the limits end the block: what failed since then failed because of them and says nothing of a motion.
+    bool cut_short() {
+        result_.limit = counted_.cost.allowance();
+        return result_.limit != flow::Status::ok;
+    }
+
     /// One cycle of all live starts; captured and failed ones leave.
     void advance() {
         flow::EnsembleRequest request;
@@ -86,8 +88,7 @@ private:
         request.duration = 2.0 * pi;
         request.max_events = most_contact_events;
         members_.assign(states_.size(), {});
-        scout_.integrator->run_ensemble(scout_.parameters, request, members_);
-        cost_.phase += request.duration * static_cast<double>(states_.size());
+        counted_.scout.run_ensemble(request, members_);
         std::size_t kept = 0;
         for (std::size_t slot = 0; slot < live_.size(); ++slot) {
             const std::size_t i = live_[slot];
@@ -124,7 +125,8 @@ private:
     void search() {
         std::vector<Candidate> candidates;
         for (const std::size_t i : live_) {
-            const Recurrence r = recurrence(tracks_[i].history, scout_.states(), scale_, 1, options_.longest_period);
+            const Recurrence r =
+                recurrence(tracks_[i].history, counted_.scout.states(), scale_, 1, options_.longest_period);
             if (r.period > 0 && r.distance < near_recurrence) { candidates.push_back({r, i}); }
         }
         std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -146,9 +148,9 @@ private:
     }
 
     bool learn_from(const flow::State& z, int period) {
-        const auto orbit = stable_orbit(exact_, z, period);
+        const auto orbit = stable_orbit(counted_.exact, z, period);
         if (!orbit) { return false; }
-        auto learnt = make_known({exact_, scout_}, *orbit, scale_);
+        auto learnt = make_known(counted_.systems, *orbit, scale_);
         if (find_known(known_, *learnt)) { return false; }
         known_.push_back(std::move(learnt));
         traps_.push_back(&known_.back()->trap);
@@ -160,7 +162,7 @@ private:
         std::size_t kept = 0;
         for (std::size_t slot = 0; slot < live_.size(); ++slot) {
             const std::size_t i = live_[slot];
-            if (!is_creeping(known_, recent(i), scout_.states(), scale_)) {
+            if (!is_creeping(known_, recent(i), counted_.scout.states(), scale_)) {
                 leave_unsettled(i);
                 continue;
             }
@@ -186,13 +188,12 @@ private:
     BlockResult finish() {
         for (const std::size_t i : live_) { leave_unsettled(i); }
         result_.found.assign(known_.begin() + static_cast<std::ptrdiff_t>(known_before_), known_.end());
-        result_.cycles = cost_.periods();
+        result_.cycles = counted_.cost.periods();
+        result_.steps = counted_.cost.steps;
         return std::move(result_);
     }
 
-    flow::Cost cost_;
-    flow::System exact_;
-    flow::System scout_;
+    CountedSystems counted_;
     const FollowOptions& options_;
     flow::State scale_;
     std::size_t known_before_;
@@ -209,7 +210,7 @@ private:
 
 BlockResult follow_block(const Systems& systems, const Box& box, std::span<const flow::State> starts,
                          const KnownOrbits& known, const FollowOptions& options) {
-    return BlockRun(systems, box, starts, known, options).run();
+    return BlockFollower(systems, box, starts, known, options).follow();
 }
 
 }  // namespace percuss::attractor

@@ -5,7 +5,6 @@
 
 #include "attractor/box.hpp"
 #include "attractor/known.hpp"
-#include "numerics/cancel.hpp"
 
 #include <vector>
 
@@ -18,7 +17,6 @@ struct FollowOptions {
     int longest_period = 12;  ///< of orbits looked for while following
     int memory = 256;         ///< strobed states kept of each start
     bool end_at_new = false;  ///< end once an orbit was found that was not known before
-    numerics::CancelRequest cancelled{};
 };
 
 /// What became of one start.
@@ -36,14 +34,16 @@ struct Follower {
 };
 
 struct BlockResult {
-    bool cancelled = false;  ///< by request: nothing else means anything
+    flow::Status limit = flow::Status::ok;  ///< cancelled, budget_spent: nothing else but the work done means anything
     std::vector<Follower> followers;
     KnownOrbits found;  ///< in the order of discovery, none of them known before
     double cycles = 0.0;
+    long steps = 0;
 };
 
 /// Strobe by strobe: advance all starts, take out the captured ones, and now and then, at fixed cycles, try Newton's
 /// method on those that nearly recur. `known` are the orbits whose traps are there from the beginning.
+/// Within the limits of the cost that `systems` carry, counted from zero for the block.
 BlockResult follow_block(const Systems& systems, const Box& box, std::span<const flow::State> starts,
                          const KnownOrbits& known, const FollowOptions& options);
 

@@ -86,16 +86,20 @@ Box ensemble_box(const flow::System& system, double amplitude) {
     }
     const bool has_stop = system.integrator->info().has_stop;
     const double centre = system.integrator->centre(system.parameters);
-    const double gap = system.stop_position() - centre;
-    const double size = has_stop ? std::max(gap, amplitude) : amplitude;
+    const double rest = system.integrator->rest_state(system.parameters)[0];
+    const double gap = system.stop_position() - rest;
+    // Where the mass can rest: more than one place where there are two wells, and both belong to the box.
+    const flow::StateRange places = system.integrator->internal_range(system.parameters, 0.0);
+    const double apart = 0.5 * (places.upper[0] - places.lower[0]);
+    const double size = std::max(has_stop ? std::max(gap, amplitude) : amplitude, apart);
     if (!(size > 0.0 && std::isfinite(size))) {
         throw std::invalid_argument("ensemble box: neither the gap nor the amplitude is above 0");
     }
     const double reach = 2.0 * size;
     const flow::StateRange internal = system.integrator->internal_range(system.parameters, reach);
     Box box{internal.lower, internal.upper};
-    box.lower[0] = centre - reach;
-    box.upper[0] = centre + (has_stop ? gap : reach);
+    box.lower[0] = std::min(rest, centre + internal.lower[0]) - reach;
+    box.upper[0] = has_stop ? rest + gap : std::max(rest, centre + internal.upper[0]) + reach;
     box.lower[1] = -reach * system.omega();
     box.upper[1] = reach * system.omega();
     return box;

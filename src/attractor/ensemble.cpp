@@ -1,5 +1,7 @@
 #include "attractor/ensemble.hpp"
 
+#include "attractor/counted_systems.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -58,6 +60,10 @@ void in_parallel(long count, int jobs, const Work& work) {
     if (failure) { std::rethrow_exception(failure); }
 }
 
+long step_budget_of(const Systems& systems) {
+    return systems.exact.cost != nullptr ? systems.exact.cost->step_budget : flow::Cost{}.step_budget;
+}
+
 /// The blocks of an ensemble.
 class Blocks {
 public:
@@ -68,17 +74,18 @@ public:
         follow_.max_cycles = options.max_cycles;
         follow_.longest_period = options.longest_period;
         follow_.end_at_new = end_at_new;
-        follow_.cancelled = options.cancelled;
     }
 
     [[nodiscard]] long count() const { return (options_.starts + block_size - 1) / block_size; }
     [[nodiscard]] long size(long block) const { return std::min<long>(block_size, options_.starts - first(block)); }
     [[nodiscard]] static long first(long block) { return block * block_size; }
 
+    /// Blocks are begun in their order: when those that have ended have spent the budget, so have those before this
+    /// one.
     BlockResult follow(long block, const KnownOrbits& known) {
-        if (options_.cancelled && options_.cancelled()) {
+        if (steps_ > budget()) {
             BlockResult none;
-            none.cancelled = true;
+            none.limit = flow::Status::budget_spent;
             return none;
         }
         Starts starts;
@@ -86,6 +93,7 @@ public:
             starts.push_back(start_state(box_, systems_.exact.states(), options_.seed, i));
         }
         BlockResult result = follow_block(systems_, box_, starts, known, follow_);
+        steps_ += result.steps;
         if (options_.on_progress) {
             const std::lock_guard lock(guard_);
             options_.on_progress(static_cast<double>(++done_) / static_cast<double>(count()));
@@ -94,27 +102,40 @@ public:
     }
 
 private:
+    [[nodiscard]] long budget() const { return step_budget_of(systems_); }
+
     const Systems& systems_;
     const Box& box_;
     const EnsembleOptions& options_;
     FollowOptions follow_;
+    std::atomic<long> steps_ = 0;
     std::mutex guard_;
     long done_ = 0;
 };
 
-/// Systems that count their work in a place of their own.
-struct CountedSystems {
-    flow::Cost cost;
-    flow::System exact;
-    flow::System scout;
-    Systems systems{exact, scout};
+/// What ends an ensemble before its last block, with any number of threads after the same one: a limit that cut a block
+/// short, or the budget spent by the blocks up to one.
+class Limits {
+public:
+    explicit Limits(const Systems& systems) : budget_(step_budget_of(systems)) {}
 
-    explicit CountedSystems(const Systems& from) : exact(from.exact), scout(from.scout) {
-        exact.cost = &cost;
-        scout.cost = &cost;
+    /// The next block in order; true once a limit is met.
+    bool met_by(const BlockResult& block) { return met_by(block.limit, block.steps); }
+    bool met_by(flow::Status limit, long steps) {
+        steps_ += steps;
+        if (status_ == flow::Status::ok) { status_ = limit; }
+        if (status_ == flow::Status::ok && steps_ > budget_) { status_ = flow::Status::budget_spent; }
+        return status_ != flow::Status::ok;
     }
-    CountedSystems(const CountedSystems&) = delete;
-    CountedSystems& operator=(const CountedSystems&) = delete;
+    template <class Outcome>
+    [[nodiscard]] Outcome status() const {
+        return status_ == flow::Status::cancelled ? Outcome::cancelled : Outcome::budget_spent;
+    }
+
+private:
+    long budget_;
+    long steps_ = 0;
+    flow::Status status_ = flow::Status::ok;
 };
 
 /// Numbers of a block's orbits (those known before it, then those found) in the list of all.
@@ -156,6 +177,7 @@ Ensemble find_attractors(const Systems& systems, const Box& box, const EnsembleO
     in_parallel(blocks.count() - 1, options.jobs, [&](long i) { results[index(i + 1)] = blocks.follow(i + 1, known); });
 
     KnownOrbits all = known;
+    Limits limits(systems);
     struct Leftover {
         std::size_t start;
         const std::vector<flow::State>* history;
@@ -164,8 +186,8 @@ Ensemble find_attractors(const Systems& systems, const Box& box, const EnsembleO
     for (std::size_t b = 0; b < results.size(); ++b) {
         const BlockResult& block = results[b];
         ensemble.cycles += block.cycles;
-        if (block.cancelled) {
-            ensemble.status = Ensemble::Status::cancelled;
+        if (limits.met_by(block)) {
+            ensemble.status = limits.status<Ensemble::Status>();
             continue;
         }
         const auto numbers = put_together(block, b == 0 ? given_count : common, all);
@@ -180,14 +202,16 @@ Ensemble find_attractors(const Systems& systems, const Box& box, const EnsembleO
     LeftoverJudge judge(counted.systems, box, all, options.leftovers);
     std::vector<std::pair<std::size_t, int>> aperiodic;
     for (const Leftover& leftover : leftovers) {
-        if (options.cancelled && options.cancelled()) {
-            ensemble.status = Ensemble::Status::cancelled;
+        const LeftoverJudge::Verdict verdict = judge.judge(*leftover.history);
+        if (const flow::Status limit = counted.cost.allowance(); limit != flow::Status::ok) {
+            (void)limits.met_by(limit, 0);
+            ensemble.status = limits.status<Ensemble::Status>();
             break;
         }
-        const LeftoverJudge::Verdict verdict = judge.judge(*leftover.history);
         ensemble.led_to[leftover.start] = verdict.orbit;
         if (verdict.aperiodic >= 0) { aperiodic.emplace_back(leftover.start, verdict.aperiodic); }
     }
+    counted.lift_limits();
     for (const auto& orbit : all) { ensemble.attractors.push_back(measure(counted.exact, orbit->orbit)); }
     for (const auto& [start, motion] : aperiodic) { ensemble.led_to[start] = static_cast<int>(all.size()) + motion; }
     ensemble.attractors.insert(ensemble.attractors.end(), judge.aperiodic().begin(), judge.aperiodic().end());
@@ -206,30 +230,33 @@ struct Objection {
     std::optional<Attractor> other;
     long unclassified = 0;
     double cycles = 0.0;
-    bool cancelled = false;
+    long steps = 0;
+    flow::Status limit = flow::Status::ok;
 };
 
 Objection object(const Systems& systems, const Box& box, BlockResult block, const KnownOrbits& known,
                  const EnsembleOptions& options) {
     CountedSystems counted(systems);
     Objection objection;
-    objection.cancelled = block.cancelled;
     KnownOrbits all = known;
     all.insert(all.end(), block.found.begin(), block.found.end());
     LeftoverJudge judge(counted.systems, box, all, options.leftovers);
     for (const Follower& follower : block.followers) {
-        if (block.cancelled || all.size() > known.size() || !judge.aperiodic().empty()) { break; }
+        if (block.limit != flow::Status::ok || all.size() > known.size() || !judge.aperiodic().empty()) { break; }
         if (follower.fate == Fate::failed) { ++objection.unclassified; }
         if (follower.fate != Fate::unsettled) { continue; }
         const auto verdict = judge.judge(follower.history);
         if (verdict.orbit < 0 && verdict.aperiodic < 0) { ++objection.unclassified; }
     }
+    objection.limit = block.limit == flow::Status::ok ? counted.cost.allowance() : block.limit;
+    counted.lift_limits();
     if (all.size() > known.size()) {
         objection.other = measure(counted.exact, all[known.size()]->orbit);
     } else if (!judge.aperiodic().empty()) {
         objection.other = judge.aperiodic().front();
     }
     objection.cycles = block.cycles + counted.cost.periods();
+    objection.steps = block.steps + counted.cost.steps;
     return objection;
 }
 
@@ -243,6 +270,7 @@ Refutation refute(const Systems& systems, const orbit::Orbit& given, const Box& 
     const KnownOrbits known = {make_known(counted.systems, given, distance_scale(systems.exact, box))};
     refutation.cycles = counted.cost.periods();
     Blocks blocks(systems, box, options, true);
+    Limits limits(systems);
     for (long begun = 0; begun < blocks.count(); begun += options.jobs) {
         const long together = std::min<long>(options.jobs, blocks.count() - begun);
         std::vector<Objection> objections(index(together));
@@ -252,8 +280,8 @@ Refutation refute(const Systems& systems, const orbit::Orbit& given, const Box& 
         for (long i = 0; i < together; ++i) {
             Objection& objection = objections[index(i)];
             refutation.cycles += objection.cycles;
-            if (objection.cancelled) {
-                refutation.status = Refutation::Status::cancelled;
+            if (limits.met_by(objection.limit, objection.steps)) {
+                refutation.status = limits.status<Refutation::Status>();
                 return refutation;
             }
             refutation.starts += blocks.size(begun + i);

@@ -9,7 +9,6 @@
 #include "attractor/attractor.hpp"
 #include "attractor/block.hpp"
 #include "attractor/leftovers.hpp"
-#include "numerics/cancel.hpp"
 
 #include <functional>
 #include <span>
@@ -24,7 +23,6 @@ struct EnsembleOptions {
     int max_cycles = 1000;  ///< budget of each start, four times this for one that creeps towards a known orbit
     int longest_period = 12;
     LeftoverOptions leftovers{};
-    numerics::CancelRequest cancelled{};        ///< may be asked from any thread
     std::function<void(double)> on_progress{};  ///< share done; may be called from any thread, one at a time
 };
 
@@ -32,8 +30,9 @@ struct Ensemble {
     enum class Status : std::uint8_t {
         not_run,
         done,
-        cancelled
-    };  ///< cancelled: results of the blocks that were finished
+        cancelled,     ///< results of the blocks that were finished
+        budget_spent,  ///< likewise
+    };
     Status status = Status::not_run;
     Box box;
     std::vector<Attractor> attractors;  ///< periodic ones in the order of discovery, then aperiodic ones
@@ -47,6 +46,8 @@ struct Ensemble {
 
 /// Every motion that the starts lead to. `given` are orbits known beforehand (stable, converged; others throw
 /// std::invalid_argument). Throws std::invalid_argument for a bad box or options out of range.
+/// The limits of the cost that `systems` carry hold, here and in refute(): the blocks together, in their order, may
+/// take its step budget, whatever else the caller has spent; whether it is cancelled is asked from any thread.
 Ensemble find_attractors(const Systems& systems, const Box& box, const EnsembleOptions& options,
                          std::span<const orbit::Orbit> given = {});
 
@@ -57,6 +58,7 @@ struct Refutation {
         refuted,      ///< `other` is the counterexample
         undecided,    ///< no counterexample, but some starts are unclassified
         cancelled,
+        budget_spent,
     };
     Status status = Status::not_run;
     Box box;

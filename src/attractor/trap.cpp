@@ -186,8 +186,7 @@ bool Trap::shell_agrees(const flow::System& system, double radius) const {
         }
         request.states = shell;
         members.assign(shell.size(), {});
-        system.integrator->run_ensemble(system.parameters, request, members);
-        if (system.cost != nullptr) { system.cost->phase += request.duration * static_cast<double>(shell.size()); }
+        system.run_ensemble(request, members);
         for (std::size_t i = 0; i < shell.size(); ++i) {
             if (members[i].status != flow::Status::ok || !agrees(j, shell[i], members[i].state)) { return false; }
         }

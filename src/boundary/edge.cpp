@@ -65,10 +65,10 @@ bool start_above(FreeBranch& branch, double resonance, const EdgeOptions& option
     return false;
 }
 
-std::string_view loss_name(Kind kind) {
+std::string_view loss_name(Kind kind, bool mirrored) {
     switch (kind) {
         case Kind::fold: return "a fold";
-        case Kind::flip: return "a loss of symmetry";
+        case Kind::flip: return mirrored ? "a loss of symmetry" : "a period doubling";
         case Kind::torus: return "a torus point";
         default: return "a boundary";
     }
@@ -79,7 +79,7 @@ void settle_edge(Edge& edge, const FreeBranch& branch, const flow::System& syste
                  const EdgeOptions& options, std::span<const flow::ParameterVector> directions) {
     const FreePoint& a = branch.previous();
     const FreePoint& b = branch.current();
-    const orbit::ReturnMap map = FreeBranch::half_cycle();
+    const orbit::ReturnMap map = FreeBranch::map_of(system);
     edge.status = EdgeStatus::failed;
     if (passed.grazing) {
         const double share = a.clearance / (a.clearance - b.clearance);
@@ -108,7 +108,9 @@ void settle_edge(Edge& edge, const FreeBranch& branch, const flow::System& syste
     const flow::System below = system.at_omega(edge.boundary.omega * (1.0 - options.below));
     // Beyond a loss of symmetry or a torus point the orbit goes on, unstable: a small push makes it leave.
     flow::State pushed = edge.boundary.state;
-    pushed[0] += 1e-4 * system.parameters[static_cast<std::size_t>(system.integrator->info().gap)];
+    const double gap = system.parameters[static_cast<std::size_t>(system.integrator->info().gap)];
+    const double room = system.stop_position() - system.integrator->rest_state(system.parameters)[0];
+    pushed[0] += 1e-4 * (map.mirrored ? gap : room);
     const bool hits = strikes(below, pushed, options.settle_cycles, failed);
     if (failed) {
         edge.reason = "the motion just below the boundary of the free motion could not be followed";
@@ -116,7 +118,7 @@ void settle_edge(Edge& edge, const FreeBranch& branch, const flow::System& syste
         edge.status = EdgeStatus::found;
     } else {
         edge.status = EdgeStatus::no_impact;
-        edge.reason = "coming down in frequency the free motion meets " + std::string(loss_name(kind)) +
+        edge.reason = "coming down in frequency the free motion meets " + std::string(loss_name(kind, map.mirrored)) +
                       " and settles on a motion that does not reach the stop";
     }
 }
@@ -165,7 +167,7 @@ Edge find_edge(FreeBranch& branch, const flow::System& system, const EdgeOptions
 
 FreeOrbitsAt free_orbits_at(FreeBranch& branch, const flow::System& system, double omega, double lowest) {
     FreeOrbitsAt found;
-    const orbit::ReturnMap map = FreeBranch::half_cycle();
+    const orbit::ReturnMap map = FreeBranch::map_of(system);
     for (int step = 0; step < 200; ++step) {
         const FreePoint& a = branch.previous();
         const FreePoint& b = branch.current();
@@ -179,7 +181,8 @@ FreeOrbitsAt free_orbits_at(FreeBranch& branch, const flow::System& system, doub
                 point.state = free.state;
                 point.omega = omega;
                 point.clearance = clearance(system.at_omega(omega), map, image, {}).value;
-                point.radius = std::sqrt(orbit::max_multiplier(free));
+                point.radius = orbit::max_multiplier(free);
+                if (map.mirrored) { point.radius = std::sqrt(point.radius); }
                 found.points.push_back(point);
             }
         }

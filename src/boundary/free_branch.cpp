@@ -12,10 +12,10 @@ using numerics::Matrix;
 using numerics::SmallMatrix;
 using numerics::Vector;
 
-orbit::ReturnMap FreeBranch::half_cycle() {
+orbit::ReturnMap FreeBranch::map_of(const flow::System& system) {
     orbit::ReturnMap map;
     map.stop = flow::StopMode::off;
-    map.mirrored = true;
+    map.mirrored = system.symmetric();
     return map;
 }
 
@@ -64,7 +64,7 @@ bool FreeBranch::evaluate(const Vector& u, Vector& f, Matrix& jacobian) {
     image_omega_ = u[n] * scale_;
     if (!(image_omega_ > 0.0)) { return false; }
     const flow::ParameterVector by_omega = orbit::unit_direction(system_.integrator->info().omega);
-    image_ = orbit::apply(system_.at_omega(image_omega_), half_cycle(), to_state(u), orbit::Differentiate::all,
+    image_ = orbit::apply(system_.at_omega(image_omega_), map_of(system_), to_state(u), orbit::Differentiate::all,
                           {&by_omega, 1}, flow::observe_extrema);
     if (!image_.ok()) { return false; }
     f = to_scaled(image_.state, 0.0).head(n) - u.head(n);
@@ -86,7 +86,7 @@ FreePoint FreeBranch::describe() const {
     point.state = to_state(u);
     point.omega = u[n] * scale_;
     point.omega_slope = t[n];
-    const orbit::Observed c = clearance(system_.at_omega(image_omega_), half_cycle(), image_, {});
+    const orbit::Observed c = clearance(system_.at_omega(image_omega_), map_of(system_), image_, {});
     point.clearance = c.value;
     for (int k = 0; k < n; ++k) {
         point.clearance_slope += c.d[static_cast<std::size_t>(k)] * t[k] * measure_[static_cast<std::size_t>(k)];
@@ -110,17 +110,17 @@ bool FreeBranch::start(double omega) {
     flow::State guess = system_.integrator->rest_state(system_.parameters);
     const auto settled = orbit::settle(there, guess, 4, flow::StopMode::off);
     if (settled) { guess = *settled; }
-    const orbit::Orbit orbit = orbit::find_orbit(there, half_cycle(), guess);
+    const orbit::Orbit orbit = orbit::find_orbit(there, map_of(system_), guess);
     if (!orbit.ok()) { return false; }
     // The response well above resonance, times the ratio of stiffness forces, is about the static one: peaks are told
     // by that, or by the gap where it is smaller.
     const orbit::Image image =
-        orbit::apply(there, half_cycle(), orbit.state, orbit::Differentiate::nothing, {}, flow::observe_extrema);
+        orbit::apply(there, map_of(system_), orbit.state, orbit::Differentiate::nothing, {}, flow::observe_extrema);
     if (!image.ok()) { return false; }
-    const double gap = there.stop_position() - there.integrator->centre(there.parameters);
-    const double amplitude = clearance(there, half_cycle(), image, {}).value + gap;
+    const double room = there.stop_position() - origin_[0];
+    const double amplitude = clearance(there, map_of(system_), image, {}).value + room;
     const double ratio = omega / scale_;
-    set_measure(std::max(std::min(gap, amplitude * std::max(1.0, ratio * ratio - 1.0)), 1e-4));
+    set_measure(std::max(std::min(room, amplitude * std::max(1.0, ratio * ratio - 1.0)), 1e-4));
     if (!walker_.start(to_scaled(orbit.state, omega), -1.0)) { return false; }
     current_ = describe();
     previous_ = current_;

@@ -27,8 +27,9 @@ struct FreePoint {
 
 class FreeBranch {
 public:
-    /// The half-cycle map of the free system.
-    static orbit::ReturnMap half_cycle();
+    /// The map of the free system that a branch is followed with: half a cycle and the mirror image where it is
+    /// symmetric, else a whole cycle.
+    static orbit::ReturnMap map_of(const flow::System& system);
 
     explicit FreeBranch(const flow::System& system);
 

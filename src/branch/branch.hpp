@@ -29,7 +29,7 @@ enum class End : std::uint8_t {
     joined,  ///< reached, at a flip or a grazing point, a branch of shorter period
     closed,  ///< came back to its start, which is also its last point: an isola
     lost,    ///< could not be followed further
-    budget,  ///< as many points as were allowed, or stopped from outside
+    budget,  ///< as many points as were allowed, or cancelled
 };
 
 std::string_view to_string(End end);

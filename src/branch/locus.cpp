@@ -53,7 +53,8 @@ private:
 
     [[nodiscard]] bool can_continue() {
         if (locus_.end != End::not_run) { return false; }
-        if (static_cast<int>(locus_.points.size()) >= options_.max_points || (options_.stop && options_.stop())) {
+        if (static_cast<int>(locus_.points.size()) >= options_.max_points ||
+            (options_.cancelled && options_.cancelled())) {
             locus_.end = End::budget;
             locus_.end_reason = "as many points as were allowed";
             return false;

@@ -4,8 +4,8 @@
 
 #include "branch/branch.hpp"
 #include "branch/piece.hpp"
+#include "numerics/cancel.hpp"
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -42,7 +42,7 @@ struct LocusOptions {
     double size = 0.1;          ///< of the motions
     std::vector<double> exact;  ///< values of the second parameter that shall be among the points, when passed
     int max_points = 2000;
-    std::function<bool()> stop;
+    numerics::CancelRequest cancelled;
 };
 
 /// family: parameters (omega, value). start: a boundary at value = options.from, refined in omega.

@@ -30,7 +30,8 @@ public:
 private:
     [[nodiscard]] bool can_continue() {
         if (branch_.end != End::not_run) { return false; }
-        if (static_cast<int>(branch_.points.size()) >= options_.max_points || (options_.stop && options_.stop())) {
+        if (static_cast<int>(branch_.points.size()) >= options_.max_points ||
+            (options_.cancelled && options_.cancelled())) {
             branch_.end = End::budget;
             branch_.end_reason = "as many points as were allowed";
             return false;

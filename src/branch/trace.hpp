@@ -4,8 +4,7 @@
 
 #include "branch/branch.hpp"
 #include "branch/piece.hpp"
-
-#include <functional>
+#include "numerics/cancel.hpp"
 
 namespace percuss::branch {
 
@@ -15,7 +14,7 @@ struct TraceOptions {
     double size = 0.1;  ///< of the motions: what counts as order one in displacement
     int max_points = 2000;
     StepOptions steps;
-    std::function<bool()> stop;  ///< asked after every point; true ends the branch
+    numerics::CancelRequest cancelled;  ///< asked after every point; true ends the branch
 };
 
 /// Where to set out.

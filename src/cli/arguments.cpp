@@ -51,8 +51,8 @@ template <class Integer>
 Integer parse_integer(const Setting& option, Integer lowest) {
     Integer value = 0;
     const char* end = option.value.data() + option.value.size();
-    const auto [stopped, error] = std::from_chars(option.value.data(), end, value);
-    if (error != std::errc() || stopped != end || value < lowest) {
+    const auto [last, error] = std::from_chars(option.value.data(), end, value);
+    if (error != std::errc() || last != end || value < lowest) {
         throw ProblemError(as_written(option) + ": must be a whole number, at least " + std::to_string(lowest));
     }
     return value;

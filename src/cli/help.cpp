@@ -2,6 +2,7 @@
 
 #include "cli/arguments.hpp"
 #include "design/quantity.hpp"
+#include "model/registry.hpp"
 #include "results/presentation.hpp"
 
 #include <algorithm>
@@ -49,10 +50,16 @@ Block keys_block(const std::function<bool(const problem::Row&)>& listed) {
 }
 
 Block values_block() {
+    std::string kinds;
+    for (const model::Actuator* actuator : model::actuators()) {
+        kinds += (kinds.empty() ? "" : ", or ") + std::string(actuator->sections_in_words);
+    }
     return results::sentence(
         "Values carry units (\"0.6 mm\", \"51.9 N/mm\"); a bare number is in the unit listed. Keys "
         "of [nondimensional] are plain numbers. Required keys are those of the kind of actuator "
-        "described: [nondimensional], or [actuator] and [material], or [spring-mass]. A repeatable "
+        "described: " +
+        kinds +
+        ". A repeatable "
         "key given as an option adds to the list of the file or replaces its entry about the same "
         "quantity or key; none clears the list first.");
 }
@@ -116,13 +123,11 @@ std::string quantities_help(std::size_t width) {
     Presentation help;
     help.title = "Quantities: for design.maximise, design.minimise and design.limit";
     Block block{"", "", {"quantity", "unit", "meaning", "actuators"}, {}};
-    for (std::size_t i = 0; i < design::quantity_count; ++i) {
-        const auto quantity = static_cast<design::Quantity>(i);
-        const design::QuantityInfo& info = design::quantity_info(quantity);
+    for (const design::QuantityInfo& info : design::all_quantities()) {
         std::string having;
         for (const model::Actuator* each : model::actuators()) {
             const auto all = design::reported_quantities(*each);
-            const bool has = std::find(all.begin(), all.end(), quantity) != all.end();
+            const bool has = std::find(all.begin(), all.end(), info.quantity) != all.end();
             if (has) { having += (having.empty() ? "" : ", ") + name_of(*each); }
         }
         block.rows.push_back({std::string(info.name), info.unit == "1" ? "-" : std::string(info.unit),

@@ -33,10 +33,19 @@ public:
             look_for_others(band_.lower);
             look_for_others(band_.upper);
         }
+        if (cut_short_) { leave_open(); }
         return std::move(band_);
     }
 
 private:
+    /// Where starts could not be followed to the end other motions may stand: no end is known then.
+    void leave_open() {
+        for (BandEnd* end : {&band_.lower, &band_.upper}) {
+            *end = BandEnd{};
+            end->reason = "the starts were not followed to the end";
+        }
+    }
+
     /// The first boundary on either side at which the motion ceases to be stable or to strike.
     void follow_branch() {
         const flow::ParameterFamily family = frequency_family(c_.system);
@@ -98,12 +107,12 @@ private:
         for (int count = places; count > 0;) {
             const double far = end.omega;
             bool moved = false;
-            for (int i = 1; i <= count && !moved; ++i) {
+            for (int i = 1; i <= count && !moved && !cut_short_; ++i) {
                 const double at = omega + (far - omega) * i / (count + 1.0);
                 moved = refuted_at(at, clear, end);
                 if (!moved) { clear = at; }
             }
-            if (!moved || count == places_again) { return; }
+            if (!moved || count == places_again || cut_short_) { return; }
             clear = omega;
             count = places_again;
         }
@@ -111,6 +120,7 @@ private:
 
     /// Whether a start at this frequency leads elsewhere; `end` is then where that other motion's window begins.
     bool refuted_at(double at, double clear, BandEnd& end) {
+        using Status = attractor::Refutation::Status;
         const flow::System exact = c_.system.at_omega(at);
         const flow::System scout = c_.scout.at_omega(at);
         const auto here = continue_orbit(c_.system, c_.orbit, at);
@@ -120,12 +130,12 @@ private:
         options.seed = c_.sampling->seed;
         options.jobs = c_.sampling->jobs;
         options.max_cycles = c_.sampling->cycles;
-        options.cancelled = c_.cancelled;
         const orbit::Orbit tuned = orbit::polish_orbit(exact, orbit::state_at_zero(exact, *here), here->map.period);
         if (!tuned.ok() || !(orbit::max_multiplier(tuned) < 1.0)) { return false; }
         const auto answer = attractor::refute({exact, scout}, tuned, attractor::ensemble_box(exact, 0.0), options);
         band_.starts += answer.starts;
-        if (answer.status != attractor::Refutation::Status::refuted) { return false; }
+        if (answer.status == Status::cancelled || answer.status == Status::budget_spent) { cut_short_ = true; }
+        if (answer.status != Status::refuted) { return false; }
         const bool below = at < c_.system.omega();
         const bool periodic = answer.other->kind == attractor::Kind::periodic;
         end.found = true;
@@ -146,6 +156,7 @@ private:
     const BandCase& c_;
     const model::Specification& design_;
     Band band_;
+    bool cut_short_ = false;
 };
 
 }  // namespace

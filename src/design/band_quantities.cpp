@@ -62,7 +62,7 @@ void measure_band(const BandRequest& r, Evaluation& evaluation) {
     const std::vector<flow::ParameterVector> directions = directions_at_fixed_frequency(r);
     const bool sample = r.problem.single_stable > SingleStable::orbit;
     const Band band = single_stable_band({r.operation.system, r.operation.scout, r.orbit, edge.omega, edge.d_omega,
-                                          directions, sample ? &r.problem.sampling : nullptr, r.demand.cancelled},
+                                          directions, sample ? &r.problem.sampling : nullptr},
                                          r.actuator);
     report_end(r, Quantity::band_lower, band.lower, evaluation);
     report_end(r, Quantity::band_upper, band.upper, evaluation);

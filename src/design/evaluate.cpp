@@ -18,7 +18,7 @@ using model::Specification;
 
 struct Evaluator::Implementation {
     Problem problem;
-    Integrators scene;
+    Integrators integrators;
 
     explicit Implementation(Problem p) : problem(std::move(p)) {
         model::validate(problem.actuator);
@@ -33,7 +33,7 @@ struct Evaluator::Implementation {
         if (!(problem.margin >= 0.0 && problem.margin < 0.5)) {
             throw std::invalid_argument("drive.margin: allowed is 0 % to 50 %");
         }
-        scene = make_integrators(problem);
+        integrators = make_integrators(problem);
     }
 };
 
@@ -42,14 +42,16 @@ namespace {
 /// One design on its way through the stages of an evaluation.
 class DesignEvaluation {
 public:
-    DesignEvaluation(const Problem& problem, const Integrators& scene, const Specification& actuator,
+    DesignEvaluation(const Problem& problem, const Integrators& integrators, const Specification& actuator,
                      const Demand& demand)
         : problem_(problem),
-          scene_(scene),
+          integrators_(integrators),
           actuator_(actuator),
           demand_(demand),
           scaled_(model::scale(actuator)) {
         result_.gradient_keys = demand.gradients;
+        cost_.cancelled = demand.cancelled;
+        cost_.step_budget = demand.step_budget;
     }
 
     Evaluation evaluate() {
@@ -108,7 +110,7 @@ private:
         options.margin = problem_.margin;
         options.find_neighbours = must_be_alone();
         options.directions = directions;
-        Operation operation = operate({actuator_, scaled_, with(scene_.own), with(scene_.scout)}, options);
+        Operation operation = operate({actuator_, scaled_, with(integrators_.own), with(integrators_.scout)}, options);
         result_.operating_point = operation.point;
         if (operation.edge) { result_.gradients.edge_omega = operation.edge->d_omega; }
         if (!operation.found()) {
@@ -138,7 +140,7 @@ private:
         set_status(reached);
         if (!reached.orbit.ok()) { return {}; }
         const flow::System& system = operation.system;
-        const flow::System tighter = with(scene_.tighter).at_omega(system.omega());
+        const flow::System tighter = with(integrators_.tighter).at_omega(system.omega());
         const Keys keys = keys_at(operation, keys_fixed);
         orbit::Orbit orbit = of_minimal_period(system, reached.orbit);
         const Measurement measurement =
@@ -155,8 +157,9 @@ private:
     /// Uncertainty of the operating frequency: how far the edge moves at a tighter tolerance, and rounding.
     double error_of(const Operation& operation) {
         const boundary::Boundary& edge = *operation.edge;
-        const boundary::Boundary again = boundary::solve_boundary(
-            with(scene_.tighter), boundary::FreeBranch::half_cycle(), edge.kind, edge.state, edge.omega, {});
+        const boundary::Boundary again =
+            boundary::solve_boundary(with(integrators_.tighter), boundary::FreeBranch::map_of(operation.system),
+                                     edge.kind, edge.state, edge.omega, {});
         const double moved = again.ok() ? std::abs(again.omega - edge.omega) : absent;
         return (1.0 - problem_.margin) * (moved + 4e-16 * edge.omega);
     }
@@ -220,7 +223,7 @@ private:
 
     void judge(const Operation& operation, const orbit::Orbit& orbit) {
         if (!must_be_alone() || !goes_on(operation)) { return; }
-        Judgement judgement = design::judge({operation, orbit, scaled_.scales, problem_, demand_.cancelled});
+        Judgement judgement = design::judge({operation, orbit, scaled_.scales, problem_});
         result_.uniqueness = std::move(judgement.uniqueness);
         if (!judgement.rejection.empty()) {
             result_.status = EvaluationStatus::not_unique;
@@ -236,17 +239,13 @@ private:
 
     // ---- the end
 
-    [[nodiscard]] bool cancelled() const { return demand_.cancelled && demand_.cancelled(); }
-    [[nodiscard]] bool spent() const { return cost_.steps > demand_.step_budget; }
-    [[nodiscard]] bool cut_short() const { return spent() || cancelled(); }
+    [[nodiscard]] bool cut_short() const { return cost_.allowance() != flow::Status::ok; }
 
     /// A stage that is cut short returns early with whatever it has: nothing of that is an answer.
     Evaluation finish() {
         if (cut_short()) {
             result_.status = EvaluationStatus::failed;
-            result_.reason = spent()
-                               ? "the budget of " + std::to_string(demand_.step_budget) + " integration steps is spent"
-                               : "cancelled";
+            result_.reason = reason_of_limit(cost_);
         }
         result_.periods = cost_.periods();
         result_.steps = cost_.steps;
@@ -254,7 +253,7 @@ private:
     }
 
     const Problem& problem_;
-    const Integrators& scene_;
+    const Integrators& integrators_;
     const Specification& actuator_;
     const Demand& demand_;
     model::Scaled scaled_;
@@ -271,13 +270,13 @@ Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 const Problem& Evaluator::problem() const { return implementation_->problem; }
 
-flow::System Evaluator::system(const Specification& actuator) const {
-    return {implementation_->scene.own.get(), model::scale(actuator).parameters, nullptr};
+flow::System Evaluator::system(const Specification& actuator, flow::Cost* cost) const {
+    return {implementation_->integrators.own.get(), model::scale(actuator).parameters, cost};
 }
 
 Evaluation Evaluator::evaluate(const Specification& actuator, const Demand& demand) const {
     model::validate(actuator);
-    return DesignEvaluation(implementation_->problem, implementation_->scene, actuator, demand).evaluate();
+    return DesignEvaluation(implementation_->problem, implementation_->integrators, actuator, demand).evaluate();
 }
 
 Evaluation Evaluator::evaluate(const Demand& demand) const {
@@ -287,7 +286,8 @@ Evaluation Evaluator::evaluate(const Demand& demand) const {
 Evaluation Evaluator::orbit(const Specification& actuator, const std::optional<std::vector<double>>& start, int period,
                             const Demand& demand) const {
     model::validate(actuator);
-    return DesignEvaluation(implementation_->problem, implementation_->scene, actuator, demand).orbit(start, period);
+    return DesignEvaluation(implementation_->problem, implementation_->integrators, actuator, demand)
+        .orbit(start, period);
 }
 
 }  // namespace percuss::design

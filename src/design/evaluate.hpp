@@ -24,8 +24,8 @@ public:
     [[nodiscard]] const Problem& problem() const;
 
     /// The nondimensional system of a specification, with the problem's integrator; its omega is the specification's, 0
-    /// without one. Lives as long as the evaluator.
-    [[nodiscard]] flow::System system(const model::Specification& actuator) const;
+    /// without one. Lives as long as the evaluator. Its work is charged to `cost`, within the limits there.
+    [[nodiscard]] flow::System system(const model::Specification& actuator, flow::Cost* cost = nullptr) const;
 
     /// The design of the problem with some keys replaced. drive.frequency absent: operate at the edge.
     [[nodiscard]] Evaluation evaluate(const model::Specification& actuator, const Demand& demand) const;

@@ -40,4 +40,12 @@ Evaluation::Evaluation() {
     error_estimates.fill(absent);
 }
 
+std::string reason_of_limit(const flow::Cost& cost) {
+    switch (cost.allowance()) {
+        case flow::Status::ok: return "";
+        case flow::Status::cancelled: return "cancelled";
+        default: return "the budget of " + std::to_string(cost.step_budget) + " integration steps is spent";
+    }
+}
+
 }  // namespace percuss::design

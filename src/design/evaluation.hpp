@@ -3,6 +3,7 @@
 /// What is asked of one design and what comes back.
 
 #include "design/problem.hpp"
+#include "flow/flow.hpp"
 #include "numerics/cancel.hpp"
 
 #include <array>
@@ -37,7 +38,7 @@ struct OperatingPoint {
 
 /// The periodic orbit at the operating point, in the units of the problem.
 struct OrbitReport {
-    std::vector<double> state;  ///< at theta = 0: x [m], x' [m/s], xi_I, xi_II
+    std::vector<double> state;  ///< at theta = 0: x [m], x' [m/s], the actuator's others
     int period = 0;             ///< drive cycles
     int contacts = 0;           ///< per period
     double x_max = absent;      ///< extrema of the displacement [m]
@@ -73,8 +74,12 @@ struct Uniqueness {
 /// apart; ARKODE some 20 times as many.
 inline constexpr long default_step_budget = 20'000'000;
 
+/// Why a run within the limits of a cost ended early; empty if it did not.
+std::string reason_of_limit(const flow::Cost& cost);
+
 /// What is wanted of an evaluation; nothing else is computed. An evaluation that is cancelled, or needs more steps than
-/// its budget, ends as failed with that reason.
+/// its budget, ends as failed with that reason. Each ensemble of starts has the budget once more, for itself: what it
+/// cannot finish within it is left unchecked.
 struct Demand {
     std::vector<Quantity> quantities;
     std::vector<model::Key> gradients;  ///< d(quantity)/d(key) for these keys

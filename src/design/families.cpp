@@ -27,7 +27,7 @@ void require_key(const Specification& spec, Key key) {
 }  // namespace
 
 double motion_size(const flow::System& system) {
-    return std::max(system.stop_position() - system.integrator->centre(system.parameters), 1e-3);
+    return std::max(system.stop_position() - system.integrator->rest_state(system.parameters)[0], 1e-3);
 }
 
 flow::ParameterFamily frequency_family(const flow::System& system) {

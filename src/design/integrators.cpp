@@ -20,13 +20,19 @@ constexpr double scout_tolerance = 1e-8;
 std::unique_ptr<flow::Integrator> make_integrator(const Problem& problem, double tolerance) {
     const Specification& spec = problem.actuator;
     kernels::IntegratorOptions options;
-    options.integrator = problem.solver.integrator;
+    options.integrator = integrator_in_use(problem);
     options.instruction_set = problem.solver.instruction_set;
     options.tolerance = tolerance;
     return kernels::make_integrator(spec.type->scene(spec), spec.law, options);
 }
 
 }  // namespace
+
+std::string integrator_in_use(const Problem& problem) {
+    const Specification& spec = problem.actuator;
+    return kernels::choose_integrator(problem.solver.integrator, spec.type->scene(spec), spec.law,
+                                      model::scale(spec).parameters);
+}
 
 Integrators make_integrators(const Problem& problem) {
     const double tolerance = problem.solver.tolerance;

@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace percuss::design {
@@ -18,6 +19,9 @@ struct Integrators {
     std::unique_ptr<flow::Integrator> tighter;  ///< a hundred times tighter, for error estimates
     std::unique_ptr<flow::Integrator> scout;    ///< looser, for finding the way; its errors reach no result
 };
+
+/// "taylor", "erk" or "cvode": the problem's choice, or what `auto` is for its actuator (kernels/kernels.hpp).
+std::string integrator_in_use(const Problem& problem);
 
 /// Throws std::invalid_argument for a specification that cannot be scaled or an integrator that does not exist.
 Integrators make_integrators(const Problem& problem);

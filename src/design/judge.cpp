@@ -27,7 +27,7 @@ Judgement judge(const JudgedCase& c) {
         return {std::move(first.uniqueness), std::move(first.rejection)};
     }
     TierTwo second = check_tier_two({operation.system, operation.scout, c.scales, c.orbit,
-                                     amplitude_of(operation.system, c.orbit), c.problem.sampling, c.cancelled});
+                                     amplitude_of(operation.system, c.orbit), c.problem.sampling});
     second.uniqueness.checked += "; " + first.uniqueness.checked;
     return {std::move(second.uniqueness), std::move(second.rejection)};
 }

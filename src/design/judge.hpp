@@ -15,7 +15,6 @@ struct JudgedCase {
     const orbit::Orbit& orbit;
     const model::Scales& scales;
     const Problem& problem;
-    const numerics::CancelRequest& cancelled;
 };
 
 struct Judgement {

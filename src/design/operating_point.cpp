@@ -70,6 +70,12 @@ Operation operate_below_edge(const DrivenDesign& design, const OperationOptions&
     if (!design.system.integrator->info().has_stop) {
         throw std::invalid_argument("drive.frequency = edge needs a stop: stop.law is none");
     }
+    const flow::System& system = design.system;
+    if (system.integrator->rest_state(system.parameters)[0] > system.stop_position()) {
+        throw std::invalid_argument(
+            "drive.frequency = edge: the stop presses on the mass at rest, so that no free motion grazes it; give "
+            "drive.frequency a number");
+    }
     Operation operation;
     boundary::FreeBranch branch(design.scout);
     const boundary::Edge edge = boundary::find_edge(branch, design.system, {}, options.directions);

@@ -39,7 +39,7 @@ enum class SingleStable : std::uint8_t { off, orbit, sampled, refuted };
 
 struct SolverOptions {
     double tolerance = 1e-13;              ///< relative, per integration step
-    std::string integrator = "taylor";     ///< taylor | erk | cvode
+    std::string integrator = "auto";       ///< auto | taylor | erk | cvode
     std::string instruction_set = "auto";  ///< auto | v2 | v3 | v4 | generic
 };
 

@@ -87,6 +87,8 @@ const QuantityTable& table() {
 
 }  // namespace
 
+std::span<const QuantityInfo> all_quantities() { return table().infos(); }
+
 const QuantityInfo& quantity_info(Quantity quantity) { return table().infos().at(index(quantity)); }
 
 std::optional<Quantity> find_quantity(std::string_view name) {

@@ -42,6 +42,8 @@ struct QuantityInfo {
     bool smooth;  ///< has a gradient (contacts and period are integers)
 };
 
+/// Every quantity there is, the general ones first.
+std::span<const QuantityInfo> all_quantities();
 const QuantityInfo& quantity_info(Quantity quantity);
 std::optional<Quantity> find_quantity(std::string_view name);
 

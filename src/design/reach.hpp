@@ -31,8 +31,10 @@ struct Reached {
 /// count.
 Reached reach_orbit(const flow::System& system, const flow::State& from, int period, bool must_strike);
 
-/// The motion reached from rest; when that is not of the period asked for, the first of a fixed sequence of 200 random
-/// starts about the centre that leads to a stable orbit of that minimal period.
+/// The motion from rest, followed cycle by cycle until it has contracted to a stable orbit: a trap (attractor/trap.hpp)
+/// around the orbit has captured the trajectory itself. For a longer period that rest does not lead to, the first of a
+/// fixed sequence of 200 random starts about the centre that leads to a stable orbit of that minimal period. unsettled,
+/// with the number of cycles followed, when it has contracted to none.
 Reached reach_from_rest(const flow::System& system, int period);
 
 /// Newton's method from a state at phase 0, stable or not. unsettled when it does not converge.

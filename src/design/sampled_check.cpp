@@ -46,7 +46,6 @@ TierTwo check_tier_two(const SampledCase& c) {
     options.seed = c.sampling.seed;
     options.jobs = c.sampling.jobs;
     options.max_cycles = c.sampling.cycles;
-    options.cancelled = c.cancelled;
     const attractor::Refutation answer = attractor::refute(systems, c.orbit, box, options);
 
     TierTwo result;
@@ -80,6 +79,9 @@ TierTwo check_tier_two(const SampledCase& c) {
         case Status::undecided:
             u.checked = "tier 2: no counterexample among " + starts + ", but " + std::to_string(answer.unclassified) +
                         " of them could not be classified";
+            break;
+        case Status::budget_spent:
+            u.checked = "tier 2: the starts spent their budget of integration steps before it was complete";
             break;
         case Status::cancelled:
         case Status::not_run: u.checked = "tier 2: cancelled before it was complete"; break;

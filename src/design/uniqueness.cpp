@@ -1,5 +1,6 @@
 #include "design/uniqueness.hpp"
 
+#include "boundary/free_branch.hpp"
 #include "design/integrators.hpp"
 #include "orbit/polish.hpp"
 
@@ -12,14 +13,24 @@ namespace {
 /// States nearer than this, nondimensional, are of the same orbit.
 constexpr double same_orbit = 1e-6;
 
+/// Half the stroke of a free motion; NaN where it cannot be followed.
+double free_amplitude(const flow::System& system, const boundary::FreePoint& p) {
+    if (system.symmetric()) {
+        return p.clearance + system.stop_position() - system.integrator->centre(system.parameters);
+    }
+    const orbit::Image image = orbit::apply(system, boundary::FreeBranch::map_of(system), p.state,
+                                            orbit::Differentiate::nothing, {}, flow::observe_extrema);
+    if (!image.ok()) { return absent; }
+    return 0.5 * (image.observed[orbit::x_max].value - image.observed[orbit::x_min].value);
+}
+
 Attractor free_attractor(const UniquenessCase& c, const boundary::FreePoint& p) {
     Attractor other;
     other.period = 1;
     other.state = to_user(p.state, c.scales, c.system.states());
     other.peak_force = 0.0;
-    other.amplitude =
-        c.scales.length * (p.clearance + c.system.stop_position() - c.system.integrator->centre(c.system.parameters));
-    other.max_multiplier = p.radius * p.radius;
+    other.amplitude = c.scales.length * free_amplitude(c.system, p);
+    other.max_multiplier = c.system.symmetric() ? p.radius * p.radius : p.radius;
     return other;
 }
 
@@ -37,8 +48,8 @@ Attractor struck_attractor(const UniquenessCase& c, const orbit::Orbit& found, c
 
 /// From rest; from the stop at speed; from far behind.
 flow::State start_state(const flow::System& system, int i) {
-    const double gap = system.stop_position() - system.integrator->centre(system.parameters);
     flow::State start = system.integrator->rest_state(system.parameters);
+    const double gap = system.stop_position() - start[0];
     if (i == 1) {
         start[0] += 0.9 * gap;
         start[1] = 2.0 * system.omega() * gap;

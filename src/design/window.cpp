@@ -150,12 +150,13 @@ Intruder find_window(const flow::System& system, const Specification& design, co
 }
 
 Intruder find_window(const Evaluator& evaluator, const Specification& design, double omega,
-                     const std::vector<Attractor>& attractors) {
+                     const std::vector<Attractor>& attractors, flow::Cost* cost) {
     Intruder intruder;
     intruder.trouble = "the motion that refutes it is not periodic, so it has no window that could be followed";
-    const flow::System system = evaluator.system(design).at_omega(omega);
+    const flow::System system = evaluator.system(design, cost).at_omega(omega);
     const model::Scales scales = model::scale(design).scales;
     for (const Attractor& attractor : attractors) {
+        if (cost != nullptr && cost->allowance() != flow::Status::ok) { break; }
         if (attractor.period < 1) { continue; }
         const flow::State state = from_user(attractor.state, "attractor", *design.type, scales, system.states());
         const orbit::Orbit polished = orbit::polish_orbit(system, state, attractor.period);
@@ -194,6 +195,7 @@ WindowAt window_at(const flow::System& system, const Intruder& intruder, const S
         }
         step *= 0.5;
         if (step < smallest_step) {
+            if (system.cost != nullptr && system.cost->allowance() != flow::Status::ok) { return window; }
             // Both ends meet where the window closes: then there is nothing left to solve for.
             if (ends.width() < 0.5 * (intruder.upper.omega - intruder.lower.omega)) {
                 window.status = WindowAt::Status::vanished;

@@ -38,9 +38,9 @@ struct Intruder {
 Intruder find_window(const flow::System& system, const model::Specification& design, const orbit::Orbit& orbit);
 
 /// The window of the first periodic one of the motions that refuted a design, in the order given: polished from its
-/// state, then as above. Not ok when none is periodic.
+/// state, then as above. Not ok when none is periodic, or the limits of `cost` (null: none) end the search.
 Intruder find_window(const Evaluator& evaluator, const model::Specification& design, double omega,
-                     const std::vector<Attractor>& attractors);
+                     const std::vector<Attractor>& attractors, flow::Cost* cost = nullptr);
 
 /// Largest relative difference of two designs' values.
 double distance(const model::Specification& a, const model::Specification& b);

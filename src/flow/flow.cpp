@@ -102,13 +102,20 @@ void System::run_ensemble(const EnsembleRequest& request, std::span<EnsembleMemb
     const Status allowance = cost->allowance();
     if (allowance != Status::ok) {
         check(request, members.size());
-        for (std::size_t i = 0; i < request.states.size(); ++i) { members[i] = {allowance, request.states[i], 0}; }
+        for (std::size_t i = 0; i < request.states.size(); ++i) { members[i] = {allowance, request.states[i], 0, 0}; }
         return;
     }
     EnsembleRequest limited = request;
+    limited.max_steps = std::min(request.max_steps, cost->step_budget - cost->steps);
     if (limited.cancelled == nullptr) { limited.cancelled = &cost->cancelled; }
     integrator->run_ensemble(parameters, limited, members);
     cost->phase += request.duration * static_cast<double>(request.states.size());
+    for (EnsembleMember& member : members.first(request.states.size())) {
+        cost->steps += member.steps;
+        if (member.status == Status::too_many_steps && limited.max_steps < request.max_steps) {
+            member.status = Status::budget_spent;
+        }
+    }
 }
 
 void Integrator::run_ensemble(const ParameterVector& parameters, const EnsembleRequest& request,
@@ -127,7 +134,8 @@ void Integrator::run_ensemble(const ParameterVector& parameters, const EnsembleR
         run(parameters, one, result);
         const auto entered = [](const Contact& contact) { return !contact.open_in; };
         members[i] = {result.status, result.state,
-                      static_cast<int>(std::count_if(result.contacts.begin(), result.contacts.end(), entered))};
+                      static_cast<int>(std::count_if(result.contacts.begin(), result.contacts.end(), entered)),
+                      result.steps};
     }
 }
 

@@ -152,6 +152,7 @@ struct EnsembleMember {
     Status status = Status::not_run;
     State state{};     ///< at the end
     int contacts = 0;  ///< entries met
+    long steps = 0;
 };
 
 template <class AnyRequest>
@@ -173,9 +174,10 @@ struct SystemInfo {
     int drive = 0;      ///< index of the amplitude of the drive
     std::array<std::string_view, max_parameters> names{};
     /// Without the stop the system, where Integrator::symmetric() says so, is unchanged under
-    /// state -> reflect(state), theta -> theta + pi, where reflect mirrors x about the centre, negates x' and permutes
-    /// the remaining states by `mirror`.
+    /// state -> reflect(state), theta -> theta + pi, where reflect mirrors x about the centre, negates x' and puts
+    /// mirror_sign times the state that `mirror` names in the place of each other one.
     std::array<int, max_states> mirror{};
+    std::array<double, max_states> mirror_sign{};
     std::span<const model::PeakSignal> peaks{};  ///< its peak signals: Observables::peak
     int means = 0;                               ///< number of its mean signals: Observables::mean
     bool releases_on_force = false;              ///< contact ends when the force has gone to zero (no-tension law)
@@ -214,8 +216,8 @@ public:
 
     /// The system at rest, undriven: a start for anything.
     [[nodiscard]] virtual State rest_state(const ParameterVector& p) const = 0;
-    /// Where the states beyond x and x' stay while |x - centre| <= reach; the entries of x and x' are zero, as is
-    /// everything for a system that has no other states.
+    /// Where the states beyond x and x' stay while |x - centre| <= reach; the entry of x holds the outermost places, from
+    /// the centre, where the mass can rest without the stop, that of x' is zero.
     [[nodiscard]] virtual StateRange internal_range(const ParameterVector& p, double reach) const;
     /// Natural frequency of small motions about rest at the mean drive, viscous states frozen, nondimensional rad.
     [[nodiscard]] virtual double linear_resonance(const ParameterVector& p) const = 0;
@@ -250,7 +252,7 @@ struct System {
     /// Within the limits of `cost`, if there is one: a run that they end, or do not let begin, has the status cancelled
     /// or budget_spent.
     void run(const Request& request, Result& result) const;
-    /// Likewise for many starts; each is charged its phase.
+    /// Likewise for many starts; each is charged its phase and its steps.
     void run_ensemble(const EnsembleRequest& request, std::span<EnsembleMember> members) const;
 };
 

@@ -56,6 +56,8 @@ public:
     [[nodiscard]] virtual State rest_state(const ParameterVector& p) const = 0;
     [[nodiscard]] virtual StateRange internal_range(const ParameterVector& /*p*/, double /*reach*/) const { return {}; }
     [[nodiscard]] virtual double linear_resonance(const ParameterVector& p) const = 0;
+    /// About the largest rate per unit of tau at which anything but the stop decays; what makes the system stiff.
+    [[nodiscard]] virtual double fastest_decay(const ParameterVector& p) const = 0;
     [[nodiscard]] virtual bool symmetric(const ParameterVector& p) const = 0;
 
     void rate(const ParameterVector& p, double theta, const State& state, bool touching, State& out) const {

@@ -245,6 +245,7 @@ private:
         const auto y = jets_.unload(i);
         std::copy(y.begin(), y.end(), member.state.begin());
         member.status = status;
+        member.steps = lane_[i].steps;
         --busy_;
     }
     /// So do all of them, and no other start is taken; those never taken get the status too.

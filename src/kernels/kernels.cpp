@@ -6,6 +6,8 @@
 #include "kernels/scene_table.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -55,6 +57,27 @@ const Set& choose_set(std::string_view requested) {
         throw std::invalid_argument(message);
     }
     return *match;
+}
+
+/// Rate of the fastest decay over drive frequency from which CVODE is the faster. Time of one orbit from rest, Taylor
+/// against CVODE: a voice coil (problems/voice-coil.ini at 400 Hz, inductance 400, 300, 200 nH) 35 to 57, 65 to 76, 70
+/// to 78 ms at ratios of 6e3, 8e3, 1.2e4; the same at 100 Hz 86 to 216 and 139 to 196 ms at 9.5e3 and 1.9e4, and from
+/// 3e4 on Taylor runs out of steps. Membranes (wu2022-nondimensional.ini, delta_B 3e-4 and 1e-4): 121 to 150 and 297 to
+/// 175 ms at 5e3 and 1.6e4.
+constexpr double stiff_ratio = 1e4;
+/// Decays of the stop in half a drive period from which CVODE is taken. Measured on problems/soft-impact.ini at 0.05 Hz
+/// under 2 N, in contact for half the period: Taylor 72 to 606 ms at 3e4, 175 to 756 ms at 1e5, and at 3e5 it runs out
+/// of steps.
+constexpr double stiff_contact = 1e5;
+
+/// Whether a stop can be in a contact of half a drive period, the longest that a drive which swings holds it for, and
+/// decays so fast that this is stiff. An underdamped one throws the mass back long before.
+bool stop_is_stiff(const flow::SystemInfo& info, const flow::ParameterVector& p, double stiffness, double omega) {
+    if (!info.has_stop) { return false; }
+    const double delta = p[static_cast<std::size_t>(info.damping)];
+    const double k = p[static_cast<std::size_t>(info.stiffness)] + stiffness;
+    const bool overdamped = delta > 2.0 * std::sqrt(k);
+    return overdamped && delta * std::numbers::pi / omega >= stiff_contact;
 }
 
 class TaylorIntegrator final : public flow::Integrator {
@@ -119,6 +142,18 @@ private:
 };
 
 }  // namespace
+
+std::string choose_integrator(std::string_view requested, const model::Scene& scene, model::ContactLaw law,
+                              const flow::ParameterVector& parameters) {
+    if (requested != "auto") { return std::string(requested); }
+    const auto system = make_plain_system(scene, law);
+    const double resonance = system->linear_resonance(parameters);
+    const double given = parameters[static_cast<std::size_t>(system->info().omega)];
+    const double omega = given > 0.0 ? given : resonance;
+    const bool stiff = system->fastest_decay(parameters) >= stiff_ratio * omega ||
+                       stop_is_stiff(system->info(), parameters, resonance * resonance, omega);
+    return stiff ? "cvode" : "taylor";
+}
 
 std::string_view instruction_set_in_use(std::string_view requested) { return choose_set(requested).name; }
 

@@ -57,6 +57,7 @@ flow::SystemInfo info_of(const model::Scene& scene, model::ContactLaw law) {
     info.drive = scene.roles.drive;
     std::copy(scene.parameters.begin(), scene.parameters.end(), info.names.begin());
     info.mirror = scene.mirror;
+    info.mirror_sign = scene.mirror_sign;
     info.peaks = scene.peaks;
     info.means = static_cast<int>(scene.means.size());
     info.releases_on_force = model::contact_rules(law).releases_on_force;
@@ -79,6 +80,7 @@ public:
     [[nodiscard]] double linear_resonance(const ParameterVector& p) const override {
         return Model::linear_resonance(p);
     }
+    [[nodiscard]] double fastest_decay(const ParameterVector& p) const override { return Model::fastest_decay(p); }
     [[nodiscard]] bool symmetric(const ParameterVector& p) const override { return Model::symmetric(p); }
     [[nodiscard]] double centre(const ParameterVector& p) const override { return Model::centre(p); }
     /// The centre is linear in the parameters.

@@ -25,11 +25,15 @@ T stop_force(const T& x, const T& v, const T& x_stop, const T& k, const T& delta
 ///   peak<T>           value (signed) of peak signal `which` in part 0 .. parts - 1 (only where the scene has peaks)
 ///   mean<T>           value of mean signal `which` (only where the scene has means)
 ///   meaningful        whether the equations mean anything at this state; false for NaN
-///   centre            position of the mass at rest, linear in the parameters
-///   rest_state        everything at rest, undriven
-///   internal_range    where the states beyond x and x' stay while |x - centre| <= reach (x and x': zero)
+///   centre            what the mirror symmetry and the gap count from, linear in the parameters
+///   rest_state        everything at rest, undriven, in a stable equilibrium: at the centre unless a bias, a second
+///   well
+///                     or a stop that presses moves it
+///   internal_range    where the states beyond x and x' stay while |x - centre| <= reach; x: the outermost places where
+///                     the mass can rest without the stop, from the centre; x': zero
 ///   linear_resonance  natural frequency of small motions about rest at the mean drive, other states frozen
-///   symmetric         whether the free system has the half-cycle mirror symmetry that Scene::mirror describes
+///   fastest_decay     about the largest rate per unit of tau at which anything but the stop decays: what makes it
+///   stiff symmetric         whether the free system has the half-cycle mirror symmetry that Scene::mirror describes
 template <class P>
 concept PlainModel = requires(const double* p, const double& theta, const double* state, double* out, double& drive,
                               double& loss, const Parameters& parameters, const StateVector& y, double reach) {
@@ -41,6 +45,7 @@ concept PlainModel = requires(const double* p, const double& theta, const double
     { P::rest_state(parameters) } -> std::same_as<StateVector>;
     { P::internal_range(parameters, reach) } -> std::same_as<StateRange>;
     { P::linear_resonance(parameters) } -> std::same_as<double>;
+    { P::fastest_decay(parameters) } -> std::same_as<double>;
     { P::symmetric(parameters) } -> std::same_as<bool>;
 }
 &&(P::scene.peaks.empty() ||

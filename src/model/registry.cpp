@@ -1,5 +1,6 @@
 #include "model/registry.hpp"
 
+#include "model/coil/coil.hpp"
 #include "model/membrane/membrane.hpp"
 #include "model/number_text.hpp"
 #include "model/spring/spring.hpp"
@@ -15,10 +16,13 @@ namespace percuss::model {
 namespace {
 
 /// One line per way to describe an actuator.
-constexpr std::array<const Actuator*, 3> rows = {&membrane::si, &membrane::nondimensional, &spring::actuator};
+constexpr std::array<const Actuator*, 4> rows = {&membrane::si, &membrane::nondimensional, &spring::actuator,
+                                                 &coil::actuator};
 
 constexpr std::array<KeyInfo, shared_keys> shared = {
-    {key_at_least(0.0, Key::stop_gap, "stop.gap", "m", "distance G from rest to the stop").with(Role::stop_gap),
+    {key_at_least(-unbounded_key, Key::stop_gap, "stop.gap", "m",
+                  "position G of the stop, from rest; on a spring suspension it may be negative: pressed at rest")
+         .with(Role::stop_gap),
      key_at_least(0.0, Key::stop_stiffness, "stop.stiffness", "N/m", "stiffness K of the stop")
          .with(Role::stop_stiffness),
      key_at_least(0.0, Key::stop_damping, "stop.damping", "N s/m", "damping c of the stop").with(Role::stop_damping),

@@ -49,12 +49,14 @@ struct Scene {
     std::string_view name;
     int states = 0;
     /// Without the stop the system (where symmetric at all) is unchanged under state -> reflect(state),
-    /// theta -> theta + pi, where reflect mirrors x about the centre, negates x' and permutes the other states so.
+    /// theta -> theta + pi, where reflect mirrors x about the centre, negates x' and puts mirror_sign times the
+    /// state that `mirror` names in the place of each other one.
     std::array<int, max_states> mirror{};
     std::span<const std::string_view> parameters;  ///< names, as the parameter vector is numbered
     ParameterRoles roles;
     std::span<const PeakSignal> peaks;        ///< at most max_peaks
     std::span<const std::string_view> means;  ///< names of the signals with a mean, at most max_means
+    std::array<double, max_states> mirror_sign{-1.0, -1.0, 1.0, 1.0};  ///< 1 or -1; -1 for x and x'
 };
 
 }  // namespace percuss::model

@@ -2,6 +2,7 @@
 /// \file
 /// Every scene that there are kernels for.
 
+#include "model/coil/scene.hpp"
 #include "model/membrane/scene.hpp"
 #include "model/spring/scene.hpp"
 
@@ -18,7 +19,8 @@ struct SceneList {
 /// One line per scene.
 using Scenes = SceneList<ViscousScene,  //
                          ElasticScene,  //
-                         SpringScene>;
+                         SpringScene,   //
+                         CoilScene>;
 
 }  // namespace PERCUSS_ISA
 }  // namespace percuss::model

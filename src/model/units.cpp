@@ -182,7 +182,9 @@ std::span<const Prefixed> printable(std::string_view unit) {
     static constexpr std::array field = {Prefixed{"V/um", 1e6}, Prefixed{"V/mm", 1e3}, Prefixed{"V/m", 1.0}};
     static constexpr std::array current = {Prefixed{"A", 1.0}, Prefixed{"mA", 1e-3}, Prefixed{"uA", 1e-6}};
     static constexpr std::array power = {Prefixed{"VA", 1.0}, Prefixed{"mVA", 1e-3}};
-    static constexpr std::array<std::pair<std::string_view, std::span<const Prefixed>>, 15> all = {{{"m", length},
+    static constexpr std::array heat = {Prefixed{"W", 1.0}, Prefixed{"mW", 1e-3}};
+    static constexpr std::array inductance = {Prefixed{"H", 1.0}, Prefixed{"mH", 1e-3}, Prefixed{"uH", 1e-6}};
+    static constexpr std::array<std::pair<std::string_view, std::span<const Prefixed>>, 17> all = {{{"m", length},
                                                                                                     {"kg", mass},
                                                                                                     {"s", time},
                                                                                                     {"Pa", pressure},
@@ -196,7 +198,9 @@ std::span<const Prefixed> printable(std::string_view unit) {
                                                                                                     {"N s", impulse},
                                                                                                     {"V/m", field},
                                                                                                     {"A", current},
-                                                                                                    {"VA", power}}};
+                                                                                                    {"VA", power},
+                                                                                                    {"W", heat},
+                                                                                                    {"H", inductance}}};
     for (const auto& [base, choices] : all) {
         if (base == unit) { return choices; }
     }

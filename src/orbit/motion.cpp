@@ -177,7 +177,7 @@ std::optional<Orbit> strobe(const flow::System& system, const Motion& motion) {
 }
 
 Motion halved_if_symmetric(const flow::System& system, const Motion& motion) {
-    if (motion.form != Form::free || motion.period != 1) { return motion; }
+    if (motion.form != Form::free || motion.period != 1 || !system.symmetric()) { return motion; }
     Motion half = motion;
     half.mirrored = true;
     const auto r = shoot(system, half, {});

@@ -43,7 +43,7 @@ void apply_mirror(const flow::System& system, std::span<const flow::ParameterVec
     const double centre = system.integrator->centre(system.parameters);
     for (int k = 0; k < info.states; ++k) {
         const int from = k < 2 ? k : info.mirror[index(k)];
-        const double sign = k < 2 ? -1.0 : 1.0;
+        const double sign = info.mirror_sign[index(k)];
         image.state[index(k)] = sign * y[index(from)] + (k == 0 ? 2.0 * centre : 0.0);
         image.rate[index(k)] = sign * rate[index(from)];
         image.derivative.row(k) = sign * d.row(from);

@@ -298,7 +298,7 @@ Section solver_section() {
              "relative tolerance of an integration step"),
          word<design::Problem>(
              "solver.integrator", [](auto& problem) -> auto& { return problem.solver.integrator; },
-             {"taylor", "erk", "cvode"}, "integrator"),
+             {"auto", "taylor", "erk", "cvode"}, "integrator; auto: Taylor, or CVODE where the design is stiff"),
          word<design::Problem>(
              "solver.instruction_set", [](auto& problem) -> auto& { return problem.solver.instruction_set; },
              {"auto", "v2", "v3", "v4", "generic"}, "x86-64 level of the kernels")},

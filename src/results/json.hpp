@@ -13,11 +13,18 @@
 
 namespace percuss::results {
 
+/// A named value. A template so that it is complete wherever Json is.
+template <class Value>
+struct Named {
+    std::string name;
+    Value value;
+};
+
 /// A JSON value; objects keep the order in which their members were added. NaN is printed as null, every other number
 /// so that it reads back to the same bits.
 class Json {
 public:
-    struct Member;
+    using Member = Named<Json>;
     using Array = std::vector<Json>;
     using Object = std::vector<Member>;
 
@@ -65,11 +72,6 @@ public:
 
 private:
     Value value_;
-};
-
-struct Json::Member {
-    std::string name;
-    Json value;
 };
 
 /// With two blanks of indentation and a new line at the end; bytes that are not UTF-8 are replaced.

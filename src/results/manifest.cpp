@@ -43,6 +43,7 @@ std::string manifest_document(const Manifest& manifest, const problem::ProblemFi
                       {"version", PERCUSS_VERSION},
                       {"compiler", __VERSION__},
                       {"instruction_set", record.instruction_set},
+                      {"integrator", record.integrator},
                       {"verb", manifest.verb},
                       {"state", state_text(manifest.state)},
                       {"ending", record.ending},

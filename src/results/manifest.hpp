@@ -25,6 +25,7 @@ struct Manifest {
 /// What else there is to say about a run when its manifest is written.
 struct RunRecord {
     std::string instruction_set;  ///< that the kernels use
+    std::string integrator;       ///< in use; empty where the problem cannot be run
     std::string ending;           ///< "verified", "infeasible", ...; empty while running
     std::string started;          ///< time stamps, ISO 8601 UTC
     std::string finished;

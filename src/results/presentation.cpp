@@ -60,8 +60,11 @@ std::string unit_of(const ProblemFile& problem, model::Key key) {
 }
 
 std::vector<StateEntry> state_entries(const ProblemFile& problem) {
-    std::vector<StateEntry> entries = {
-        {"x", si_unit(problem, "m")}, {"x'", si_unit(problem, "m/s")}, {"xi_I", ""}, {"xi_II", ""}};
+    std::vector<StateEntry> entries;
+    for (const model::StateInfo& state : problem.design.actuator.type->states) {
+        const std::string_view unit = state.unit;
+        entries.push_back({std::string(state.name), unit.empty() ? "" : si_unit(problem, std::string(unit))});
+    }
     entries.resize(static_cast<std::size_t>(problem::problem_states(problem)));
     return entries;
 }

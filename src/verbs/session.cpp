@@ -1,5 +1,6 @@
 #include "verbs/session.hpp"
 
+#include "design/integrators.hpp"
 #include "kernels/kernels.hpp"
 #include "problem/problem_error.hpp"
 #include "results/page.hpp"
@@ -83,6 +84,7 @@ Session::Session(const Verb& verb, RunSettings settings)
     sampling.jobs = settings_.jobs.value_or(sampling.jobs);
     study_ = study_problem(problem_);
     record_.instruction_set = kernels::instruction_set_in_use(problem_.design.solver.instruction_set);
+    record_.integrator = problem_.troubles.empty() ? design::integrator_in_use(problem_.design) : "";
     record_.started = results::time_stamp();
     const results::EarlierRun earlier = earlier_run(settings_);
     if (!verb.inspects && settings_.out != no_folder) {

@@ -34,7 +34,6 @@ inline design::Problem design_problem(const StudyProblem& problem) {
 /// Progress: called now and then with the share done (0..1, negative if unknown) and a short line. Returning is all
 /// that is asked of it.
 using Observer = std::function<void(double, std::string_view)>;
-using StopRequest = numerics::CancelRequest;
 using results::Column;
 using results::RowSink;
 

@@ -1,5 +1,6 @@
 #include "verbs/verbs.hpp"
 
+#include "model/registry.hpp"
 #include "problem/nearest_name.hpp"
 #include "problem/problem_error.hpp"
 #include "verbs/attractors/verb.hpp"
@@ -91,10 +92,15 @@ VerbOption gradients_option() {
 }
 
 bool reads(const Verb& verb, const problem::Row& row) {
-    constexpr std::array<std::string_view, 7> common = {"actuator",       "material",    "stop",  "drive",
-                                                        "nondimensional", "spring-mass", "solver"};
+    constexpr std::array<std::string_view, 4> common = {"actuator", "stop", "drive", "solver"};
     const auto in = [&](const auto& names) { return std::find(names.begin(), names.end(), row.section()); };
-    return verb.inspects || in(common) != common.end() || in(verb.sections) != verb.sections.end();
+    const auto actuators = model::actuators();
+    const bool of_actuators = std::any_of(actuators.begin(), actuators.end(), [&](const model::Actuator* actuator) {
+        return std::any_of(actuator->sections.begin(), actuator->sections.end(), [&](std::string_view section) {
+            return section.substr(0, section.find('.')) == row.section();
+        });
+    });
+    return verb.inspects || of_actuators || in(common) != common.end() || in(verb.sections) != verb.sections.end();
 }
 
 StudyProblem study_problem(const problem::ProblemFile& problem) {

@@ -183,6 +183,10 @@ void check_si(const Specification& spec, std::vector<std::string>& found) {
         found.push_back(assignment(key::outer_radius, outer) + " is out of range: must be above " +
                         assignment(key::inner_radius, inner));
     }
+    const double stop_gap = spec.value(Key::stop_gap);
+    if (stop_gap < 0.0) {
+        found.push_back(assignment(Key::stop_gap, stop_gap) + " is out of range: must be at least 0");
+    }
     check_maxwell_branch(spec, key::maxwell_modulus, key::maxwell_viscosity, found);
 }
 

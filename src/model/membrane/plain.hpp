@@ -175,6 +175,8 @@ struct ViscousMembranes {
         }
         return sum * values[membrane::layers];
     }
+    /// Of a Maxwell stretch about its elastic one: xi'/xi = (L - 1/(2 L) - 1/2)/delta_B with L = (lambda_1/xi)^alpha_B.
+    static double fastest_decay(const Parameters& p) { return 1.5 * p[membrane::alpha_b] / p[membrane::delta_b]; }
     /// Above the voltage that makes the rest position unstable: the undriven frequency.
     static double linear_resonance(const Parameters& p) {
         const double voltage = p[membrane::voltage];
@@ -205,6 +207,7 @@ struct ElasticMembranes : ViscousMembranes {
     static bool meaningful(const StateVector& y) { return ViscousMembranes::meaningful(filled(y.data())); }
     static StateVector rest_state(const Parameters& p) { return {ViscousMembranes::centre(p), 0.0, 0.0, 0.0}; }
     static StateRange internal_range(const Parameters&, double) { return {}; }
+    static double fastest_decay(const Parameters&) { return 0.0; }
 };
 
 }  // namespace percuss::model

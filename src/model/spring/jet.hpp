@@ -36,6 +36,7 @@ public:
           stiffness_(p[spring::stop_stiffness]),
           damping_(p[spring::stop_damping]),
           omega_(p[spring::omega]),
+          bias_(p[spring::bias]),
           inverse_omega_(1.0 / p[spring::omega]),
           cubic_(SeriesTraits<T>::has_derivatives || !is_zero(p[spring::cubic])) {}
 
@@ -122,7 +123,8 @@ private:
         const Real sign = (n % 4 == 1 || n % 4 == 2) ? Real(-1) : Real(1);
         drive_[n] = force_ * (n % 2 == 0 ? cos_ : sin_) * (sign * inverse_factorial_);
         const T linear = drive_[n] - c_ * v_[n] - k1_ * x_[n];
-        return cubic_ ? linear - k3_ * cube(n) : linear;
+        const T sum = cubic_ ? linear - k3_ * cube(n) : linear;
+        return n == 0 ? sum + bias_ : sum;
     }
     /// Coefficient n of x^3, given x up to there.
     T cube(int n) {
@@ -143,7 +145,7 @@ private:
         v_[n + 1] = acceleration * inverse_omega_ * reciprocal;
     }
 
-    T c_, k1_, k3_, force_, x_stop_, stiffness_, damping_, omega_, inverse_omega_;
+    T c_, k1_, k3_, force_, x_stop_, stiffness_, damping_, omega_, bias_, inverse_omega_;
     bool cubic_;
     T cos_{}, sin_{};
     Real inverse_factorial_ = 1;

@@ -4,6 +4,7 @@
 
 #include "model/plain.hpp"
 #include "model/spring/spring.hpp"
+#include "model/suspension.hpp"
 
 #include <cmath>
 
@@ -15,7 +16,7 @@ void spring_rhs(const T* p, const T& theta, const T* state, bool touching, T* ou
     using std::cos;
     const T& x = state[0];
     T acceleration = p[spring::force] * cos(theta) - p[spring::damping] * state[1] - p[spring::stiffness] * x -
-                     p[spring::cubic] * x * x * x;
+                     p[spring::cubic] * x * x * x + p[spring::bias];
     if (touching) {
         acceleration -= stop_force(x, state[1], p[spring::gap], p[spring::stop_stiffness], p[spring::stop_damping]);
     }
@@ -43,21 +44,20 @@ struct PlainSpring {
         spring_powers(p, theta, state, drive, loss);
     }
     static bool meaningful(const StateVector& y) { return std::abs(y[0]) < 1e12 && std::abs(y[1]) < 1e12; }
-    static bool symmetric(const Parameters&) { return true; }
-    static double centre(const Parameters&) { return 0.0; }
-    static StateVector rest_state(const Parameters&) { return {}; }
-    static StateRange internal_range(const Parameters&, double) { return {}; }
-    /// sqrt(k1); for a double well the frequency in a well, for a purely cubic spring the one (describing function,
-    /// 3/4 k3 A^2) at the static amplitude A = (F/k3)^(1/3); 1 when nothing restores the mass.
-    static double linear_resonance(const Parameters& p) {
-        const double k1 = p[spring::stiffness];
-        const double k3 = p[spring::cubic];
-        if (k1 > 0.0) { return std::sqrt(k1); }
-        if (!(k3 > 0.0)) { return 1.0; }
-        const double amplitude = std::cbrt(std::abs(p[spring::force]) / k3);
-        const double squared = k1 < 0.0 ? -2.0 * k1 : 0.75 * k3 * amplitude * amplitude;
-        return squared > 0.0 ? std::sqrt(squared) : 1.0;
+    static double fastest_decay(const Parameters& p) { return p[spring::damping]; }
+    /// `held_force`: of the drive, were it held still.
+    static Suspension suspension(const Parameters& p) {
+        return {p[spring::stiffness], p[spring::cubic],          p[spring::bias],
+                p[spring::gap],       p[spring::stop_stiffness], p[spring::force]};
     }
+    static bool symmetric(const Parameters& p) { return is_symmetric(suspension(p)); }
+    static double centre(const Parameters&) { return 0.0; }
+    static StateVector rest_state(const Parameters& p) { return {rest_position(suspension(p)), 0.0, 0.0, 0.0}; }
+    static StateRange internal_range(const Parameters& p, double) {
+        const Wells at = wells(suspension(p));
+        return {{at.lower, 0.0, 0.0, 0.0}, {at.upper, 0.0, 0.0, 0.0}};
+    }
+    static double linear_resonance(const Parameters& p) { return natural_frequency(suspension(p)); }
 };
 
 }  // namespace percuss::model

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The spring-mass actuator m x'' + c x' + k1 x + k3 x^3 + f_stop = F cos(theta), stop at x = gap: its parameters, keys
-/// and scene, and its row in the registry. State (x, x').
+/// The spring-mass actuator m x'' + c x' + k1 x + k3 x^3 + f_stop = F cos(theta) + F0, stop at x = gap: its parameters,
+/// keys and scene, and its row in the registry. State (x, x').
 
 #include "model/actuator.hpp"
 #include "model/scene.hpp"
@@ -22,11 +22,12 @@ enum Index : std::uint8_t {
     stop_stiffness,
     stop_damping,
     omega,
+    bias,  // F0
     count
 };
 inline constexpr int states = 2;
-inline constexpr std::array<std::string_view, count> names = {"damping", "stiffness", "cubic",   "force",
-                                                              "gap",     "k",         "delta_i", "omega"};
+inline constexpr std::array<std::string_view, count> names = {"damping", "stiffness", "cubic", "force", "gap",
+                                                              "k",       "delta_i",   "omega", "bias"};
 
 inline constexpr ParameterRoles roles = {omega, gap, stop_stiffness, stop_damping, force};
 inline constexpr Scene scene = {"spring", states, {0, 1, 0, 0}, names, roles, {}, {}};
@@ -39,6 +40,7 @@ inline constexpr Key stiffness = own_key(3, 2);
 inline constexpr Key cubic = own_key(3, 3);
 inline constexpr Key force = own_key(3, 4);
 inline constexpr Key omega = own_key(3, 5);
+inline constexpr Key bias = own_key(3, 6);
 }  // namespace key
 
 extern const Actuator actuator;  ///< [spring-mass]

@@ -2,6 +2,7 @@
 
 #include "design/integrators.hpp"
 #include "design/operating_point.hpp"
+#include "verbs/limits.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -15,18 +16,23 @@ using attractor::Box;
 using attractor::Ensemble;
 using std::numbers::pi;
 
-/// One run of the verb.
-class Run {
+/// Followed starts take 10 to 20 steps of the Taylor integrator a drive cycle, some 20 times as many of ARKODE.
+constexpr double steps_per_cycle = 200.0;
+
+/// From the operating point to the report.
+class AttractorSearch {
 public:
-    Run(const StudyProblem& problem, const AttractorsOptions& study)
+    AttractorSearch(const StudyProblem& problem, const AttractorsOptions& study,
+                    const numerics::CancelRequest& cancelled)
         : problem_(problem),
           study_(study),
-          scene_(design::make_integrators(problem.design)),
+          integrators_(design::make_integrators(problem.design)),
           scaled_(model::scale(problem.design.actuator)),
-          exact_{scene_.own.get(), scaled_.parameters, &cost_},
-          scout_{scene_.scout.get(), scaled_.parameters, &cost_} {}
+          cost_(limited_cost(cancelled, static_cast<double>(study.starts) * study.cycles, steps_per_cycle)),
+          exact_{integrators_.own.get(), scaled_.parameters, &cost_},
+          scout_{integrators_.scout.get(), scaled_.parameters, &cost_} {}
 
-    AttractorsResult run(const Observer& observer, const StopRequest& stop) {
+    AttractorsResult run(const Observer& observer) {
         if (!operate()) { return std::move(result_); }
         const Box box = choose_box();
         result_.lower = design::to_user(box.lower, scaled_.scales, exact_.states());
@@ -37,7 +43,6 @@ public:
         options.seed = problem_.seed;
         options.jobs = problem_.jobs;
         options.max_cycles = study_.cycles;
-        options.cancelled = stop;
         if (observer) {
             options.on_progress = [&](double share) { observer(share, "starts followed"); };
         }
@@ -57,6 +62,7 @@ private:
             const bool no_impact = operation.status == design::OperationStatus::no_impact;
             result_.ending = no_impact ? Ending::infeasible : Ending::some_failed;
             result_.reason = operation.reason;
+            (void)cut_short(cost_, result_);
             return false;
         }
         exact_ = operation.system;
@@ -107,6 +113,11 @@ private:
             result_.ending = Ending::interrupted;
             result_.reason = "stopped early: of " + std::to_string(study_.starts) + " starts " +
                              std::to_string(ensemble.starts) + " were looked at";
+        } else if (ensemble.status == Ensemble::Status::budget_spent) {
+            result_.ending = Ending::budget;
+            result_.reason = "the budget of " + std::to_string(cost_.step_budget) + " integration steps is spent: of " +
+                             std::to_string(study_.starts) + " starts " + std::to_string(ensemble.starts) +
+                             " were looked at";
         } else if (ensemble.unclassified > 0) {
             result_.ending = Ending::not_certified;
             result_.reason = std::to_string(ensemble.unclassified) + " starts could not be classified";
@@ -141,7 +152,7 @@ private:
 
     const StudyProblem& problem_;
     const AttractorsOptions& study_;
-    design::Integrators scene_;
+    design::Integrators integrators_;
     model::Scaled scaled_;
     flow::Cost cost_;
     flow::System exact_, scout_;
@@ -152,9 +163,9 @@ private:
 }  // namespace
 
 AttractorsResult run_attractors(const StudyProblem& problem, const AttractorsOptions& study, const Observer& observer,
-                                const StopRequest& stop) {
+                                const numerics::CancelRequest& cancelled) {
     const auto start = std::chrono::steady_clock::now();
-    AttractorsResult result = Run(problem, study).run(observer, stop);
+    AttractorsResult result = AttractorSearch(problem, study, cancelled).run(observer);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
 }

@@ -56,8 +56,8 @@ struct AttractorsResult {
 
 /// At the given drive frequency, or at (1 - margin) times the edge; the orbit reached there is then known beforehand
 /// and gives the box its size. The ending is verified when every start was classified, not_certified when some were
-/// not, interrupted when stopped, infeasible without an edge. Throws std::invalid_argument for a bad box.
+/// not, interrupted when cancelled, infeasible without an edge. Throws std::invalid_argument for a bad box.
 AttractorsResult run_attractors(const StudyProblem& problem, const AttractorsOptions& study, const Observer& observer,
-                                const StopRequest& stop);
+                                const numerics::CancelRequest& cancelled);
 
 }  // namespace percuss::verbs

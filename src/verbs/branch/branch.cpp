@@ -9,6 +9,7 @@
 #include "orbit/polish.hpp"
 #include "verbs/branch/branch_setup.hpp"
 #include "verbs/evaluate/evaluate.hpp"
+#include "verbs/limits.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -26,16 +27,16 @@ using branch::Branch;
 /// One study under way.
 class Map {
 public:
-    Map(const StudyProblem& problem, const BranchOptions& study, const Observer& observer, const StopRequest& stop)
+    Map(const StudyProblem& problem, const BranchOptions& study, const Observer& observer,
+        const numerics::CancelRequest& cancelled)
         : study_(study),
           observer_(observer),
-          stop_(stop),
-          setup_(problem, study) {
+          setup_(problem, study, cancelled) {
         options_.from = setup_.from;
         options_.to = setup_.to;
         options_.size = setup_.size;
         options_.max_points = study.max_points;
-        options_.stop = stop;
+        options_.cancelled = cancelled;
     }
 
     BranchResult run() {
@@ -55,7 +56,7 @@ public:
     }
 
 private:
-    [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
+    [[nodiscard]] bool is_cut_short() const { return setup_.cost.allowance() != flow::Status::ok; }
 
     void report(double share, const std::string& what) const {
         if (observer_) { observer_(share, what); }
@@ -77,11 +78,11 @@ private:
 
     /// Branches of twice the period at every flip, their flips in turn, up to the period asked for.
     void follow_flips() {
-        for (std::size_t i = 0; i < result_.branches.size() && !stopped(); ++i) {
+        for (std::size_t i = 0; i < result_.branches.size() && !is_cut_short(); ++i) {
             const auto boundaries = result_.branches[i].boundaries;
             for (const BoundaryPoint& found : boundaries) {
                 const int period = result_.branches[i].period * (found.of_half_cycle ? 1 : 2);
-                if (found.kind != boundary::Kind::flip || period > study_.period || stopped()) { continue; }
+                if (found.kind != boundary::Kind::flip || period > study_.period || is_cut_short()) { continue; }
                 const auto departure = branch::departure_at_flip(setup_.family, found, options_.size);
                 if (!departure) { continue; }
                 report(-1.0, "branch of period " + std::to_string(period));
@@ -106,8 +107,10 @@ private:
             low = std::max(low, 0.9 * first->point.parameter);
             high = std::min(high, 1.1 * last->point.parameter);
         }
-        for (const auto& found : find_motions_along(setup_, study_, low, high, observer_, stop_)) {
-            if (stopped()) { return; }
+        const FoundMotions met = find_motions_along(setup_, study_, low, high, observer_);
+        starts_complete_ = met.complete;
+        for (const auto& found : met.motions) {
+            if (is_cut_short()) { return; }
             const branch::Look seen = branch::look(setup_.family, found.motion, found.parameter);
             if (!seen.ok() || known(seen.point)) { continue; }
             report(-1.0, "branch of period " + std::to_string(found.motion.period));
@@ -150,18 +153,22 @@ private:
     void conclude() {
         if (result_.branches.empty()) {
             result_.ending = Ending::some_failed;
+            (void)cut_short(setup_.cost, result_);
             return;
         }
         const auto ended = [&](branch::End end) {
             return std::any_of(result_.branches.begin(), result_.branches.end(),
                                [&](const Branch& b) { return b.end == end || b.begin == end; });
         };
-        if (stopped()) {
-            result_.ending = Ending::interrupted;
-            result_.reason = "stopped before the map was complete";
+        if (is_cut_short()) {
+            cut_short(setup_.cost, result_);
+            if (result_.ending == Ending::interrupted) { result_.reason = "stopped before the map was complete"; }
         } else if (ended(branch::End::lost)) {
             result_.ending = Ending::some_failed;
             result_.reason = "a branch was lost before it left the range";
+        } else if (!starts_complete_) {
+            result_.ending = Ending::budget;
+            result_.reason = "the starts for subharmonic motions spent their budget of integration steps";
         } else if (ended(branch::End::budget)) {
             result_.ending = Ending::budget;
             result_.reason = "a branch has as many points as branch.max_points allows";
@@ -172,18 +179,18 @@ private:
 
     const BranchOptions& study_;
     const Observer& observer_;
-    const StopRequest& stop_;
     BranchSetup setup_;
     branch::TraceOptions options_;
+    bool starts_complete_ = true;
     BranchResult result_;
 };
 
 }  // namespace
 
 BranchResult run_branch(const StudyProblem& problem, const BranchOptions& study, const Observer& observer,
-                        const StopRequest& stop) {
+                        const numerics::CancelRequest& cancelled) {
     const auto start = std::chrono::steady_clock::now();
-    BranchResult result = Map(problem, study, observer, stop).run();
+    BranchResult result = Map(problem, study, observer, cancelled).run();
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
 }

@@ -42,7 +42,7 @@ struct BranchResult {
 /// Columns of the rows: branch, period, omega, drive_frequency, value, amplitude, x_max, x_min, peak_force, contacts,
 /// max_multiplier, stable.
 BranchResult run_branch(const StudyProblem& problem, const BranchOptions& study, const Observer& observer,
-                        const StopRequest& stop);
+                        const numerics::CancelRequest& cancelled);
 
 /// Scales at a point of the result, which depend on the key that is varied.
 model::Scales scales_at(const design::Problem& problem, const BranchResult& result, double parameter);

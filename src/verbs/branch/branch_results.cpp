@@ -262,7 +262,7 @@ std::string branch_csv(const ProblemFile& problem, const BranchResult& result) {
     const bool si = units_of(problem) == "si";
     const std::string m = si ? "m" : "";
     std::vector<Column> columns = {
-        {"branch", ""}, {"period", "drive cycles"}, {"omega", "rad per Gamma"}, {"drive_frequency", si ? "Hz" : ""}};
+        {"branch", ""}, {"period", "drive cycles"}, {"omega", si ? "rad/s" : ""}, {"drive_frequency", si ? "Hz" : ""}};
     if (!result.along_frequency) {
         const std::string_view unit = model::key_info(result.along).unit;
         columns.push_back({std::string(model::key_info(result.along).name), unit == "1" ? "" : std::string(unit)});
@@ -275,7 +275,8 @@ std::string branch_csv(const ProblemFile& problem, const BranchResult& result) {
         for (const Point& p : result.branches[b].points) {
             const UserPoint user = to_user(problem, result, p);
             std::vector<std::string> row = {std::to_string(b), std::to_string(result.branches[b].period),
-                                            cell(user.omega), cell(user.drive_frequency)};
+                                            cell(in_user_units(problem, user.omega, user.time)),
+                                            cell(user.drive_frequency)};
             if (!result.along_frequency) { row.push_back(cell(user.value)); }
             for (double v : {user.amplitude, user.x_max, user.x_min, user.peak_force}) { row.push_back(cell(v)); }
             row.push_back(std::to_string(p.contacts.size()));
@@ -290,7 +291,7 @@ std::string branch_csv(const ProblemFile& problem, const BranchResult& result) {
 std::string boundaries_csv(const ProblemFile& problem, const BranchResult& result) {
     const bool si = units_of(problem) == "si";
     std::vector<Column> columns = {
-        {"branch", ""}, {"kind", ""}, {"omega", "rad per Gamma"}, {"drive_frequency", si ? "Hz" : ""}};
+        {"branch", ""}, {"kind", ""}, {"omega", si ? "rad/s" : ""}, {"drive_frequency", si ? "Hz" : ""}};
     if (!result.along_frequency) {
         const std::string_view unit = model::key_info(result.along).unit;
         columns.push_back({std::string(model::key_info(result.along).name), unit == "1" ? "" : std::string(unit)});
@@ -303,7 +304,8 @@ std::string boundaries_csv(const ProblemFile& problem, const BranchResult& resul
     for (std::size_t b = 0; b < result.branches.size(); ++b) {
         for (const BoundaryPoint& found : result.branches[b].boundaries) {
             const UserPoint user = to_user(problem, result, found.point);
-            std::vector<std::string> row = {std::to_string(b), std::string(kind_name(found)), cell(user.omega),
+            std::vector<std::string> row = {std::to_string(b), std::string(kind_name(found)),
+                                            cell(in_user_units(problem, user.omega, user.time)),
                                             cell(user.drive_frequency)};
             if (!result.along_frequency) { row.push_back(cell(user.value)); }
             row.push_back(cell(found.uncertainty));

@@ -4,6 +4,7 @@
 #include "design/operating_point.hpp"
 #include "design/reach.hpp"
 #include "orbit/polish.hpp"
+#include "verbs/limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,14 +27,15 @@ double unit_in_user(Key key, const model::Scales& scales) { return model::per_ra
 
 }  // namespace
 
-BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study)
+BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study, const numerics::CancelRequest& cancelled)
     : problem(p),
-      scene(design::make_integrators(p.design)),
-      specification(p.design.actuator) {
+      integrators(design::make_integrators(p.design)),
+      specification(p.design.actuator),
+      cost(limited_cost(cancelled)) {
     model::validate(specification);
     const model::Scaled scaled = model::scale(specification);
     scales = scaled.scales;
-    system = {scene.own.get(), scaled.parameters, &cost};
+    system = {integrators.own.get(), scaled.parameters, &cost};
     omega_index = static_cast<std::size_t>(system.integrator->info().omega);
     const double resonance = system.integrator->linear_resonance(system.parameters);
     const Key frequency = model::frequency_key(specification);
@@ -43,7 +45,7 @@ BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study)
     if (!model::has_frequency(specification) && !along_frequency) {
         // The frequency of the operating point is held.
         flow::System looser = system;
-        looser.integrator = scene.scout.get();
+        looser.integrator = integrators.scout.get();
         design::OperationOptions options;
         options.margin = p.design.margin;
         const design::Operation operation = design::operate({specification, scaled, system, looser}, options);
@@ -74,7 +76,7 @@ BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study)
         throw std::invalid_argument("branch.from and branch.to are equal: the range is empty");
     }
     scout = system;
-    scout.integrator = scene.scout.get();
+    scout.integrator = integrators.scout.get();
     size = has_stop ? design::motion_size(system) : 1.0;
 }
 

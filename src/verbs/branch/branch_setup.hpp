@@ -13,7 +13,7 @@ namespace percuss::verbs {
 
 struct BranchSetup {
     /// Throws std::invalid_argument for a parameter that cannot be varied and for an empty range.
-    BranchSetup(const StudyProblem& problem, const BranchOptions& study);
+    BranchSetup(const StudyProblem& problem, const BranchOptions& study, const numerics::CancelRequest& cancelled);
     BranchSetup(const BranchSetup&) = delete;
     BranchSetup& operator=(const BranchSetup&) = delete;
 
@@ -24,7 +24,7 @@ struct BranchSetup {
     [[nodiscard]] double from_omega(double omega) const;
 
     const StudyProblem& problem;
-    design::Integrators scene;
+    design::Integrators integrators;
     model::Specification specification;  ///< with a drive frequency
     model::Scales scales;
     flow::Cost cost;
@@ -47,7 +47,11 @@ struct FoundMotion {
     orbit::Motion motion;
     double parameter = 0.0;
 };
-std::vector<FoundMotion> find_motions_along(const BranchSetup& setup, const BranchOptions& study, double low,
-                                            double high, const Observer& observer, const StopRequest& stop);
+struct FoundMotions {
+    std::vector<FoundMotion> motions;
+    bool complete = true;  ///< false: at some place the starts spent their budget of steps
+};
+FoundMotions find_motions_along(const BranchSetup& setup, const BranchOptions& study, double low, double high,
+                                const Observer& observer);
 
 }  // namespace percuss::verbs

@@ -13,7 +13,7 @@ constexpr int places = 32;  ///< over the range: subharmonic windows narrower th
 std::vector<double> places_of(const BranchSetup& setup, double low, double high) {
     if (setup.along_frequency && model::has_frequency(setup.problem.design.actuator)) {
         const auto omega = design::given_omega(setup.problem.design.actuator,
-                                               model::scale(setup.problem.design.actuator), *setup.scene.own);
+                                               model::scale(setup.problem.design.actuator), *setup.integrators.own);
         if (omega && *omega >= low && *omega <= high) { return {*omega}; }
     }
     std::vector<double> at;
@@ -26,29 +26,32 @@ std::vector<double> places_of(const BranchSetup& setup, double low, double high)
 
 }  // namespace
 
-std::vector<FoundMotion> find_motions_along(const BranchSetup& setup, const BranchOptions& study, double low,
-                                            double high, const Observer& observer, const StopRequest& stop) {
-    std::vector<FoundMotion> found;
+FoundMotions find_motions_along(const BranchSetup& setup, const BranchOptions& study, double low, double high,
+                                const Observer& observer) {
+    FoundMotions found;
     const std::vector<double> at = places_of(setup, low, high);
     for (std::size_t i = 0; i < at.size(); ++i) {
-        if (study.starts < 1 || (stop && stop())) { break; }
+        if (study.starts < 1 || setup.cost.allowance() != flow::Status::ok) { break; }
         if (observer) {
             observer(static_cast<double>(i) / static_cast<double>(at.size()), "starts for subharmonic motions");
         }
         const flow::System exact = setup.family.at(at[i]);
         flow::System scout = exact;
-        scout.integrator = setup.scene.scout.get();
+        scout.integrator = setup.integrators.scout.get();
         attractor::EnsembleOptions options;
         options.starts = study.starts;
         options.seed = setup.problem.seed;
         options.jobs = setup.problem.jobs;
         options.longest_period = std::max(12, study.period);
-        options.cancelled = stop;
         const attractor::Box box = attractor::ensemble_box(exact, 0.0);
         const auto ensemble = attractor::find_attractors({exact, scout}, box, options);
+        if (ensemble.status == attractor::Ensemble::Status::budget_spent) {
+            found.complete = false;
+            break;
+        }
         for (const attractor::Attractor& motion : ensemble.attractors) {
             const bool wanted = motion.kind == attractor::Kind::periodic && motion.period <= study.period;
-            if (wanted) { found.push_back({orbit::motion_of(exact, motion.orbit), at[i]}); }
+            if (wanted) { found.motions.push_back({orbit::motion_of(exact, motion.orbit), at[i]}); }
         }
     }
     return found;

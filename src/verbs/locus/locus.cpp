@@ -3,6 +3,7 @@
 #include "branch/trace.hpp"
 #include "design/families.hpp"
 #include "verbs/branch/branch_setup.hpp"
+#include "verbs/limits.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -43,7 +44,7 @@ bool ends_at(const branch::Locus& curve, const branch::BoundaryPoint& start, dou
 }  // namespace
 
 LocusResult run_locus(const StudyProblem& problem, const LocusOptions& study, const Observer& observer,
-                      const StopRequest& stop) {
+                      const numerics::CancelRequest& cancelled) {
     const auto begun = std::chrono::steady_clock::now();
     if (!study.along) {
         throw std::invalid_argument("locus.along is missing: give the key to vary besides the drive "
@@ -72,17 +73,18 @@ LocusResult run_locus(const StudyProblem& problem, const LocusOptions& study, co
     spec.set(*study.along, *study.to);
     model::validate(spec);
     spec.set(*study.along, *study.from);
-    const BranchSetup setup(at_start, BranchOptions{});
+    const BranchSetup setup(at_start, BranchOptions{}, cancelled);
     branch::TraceOptions trace_options;
     trace_options.from = setup.from;
     trace_options.to = setup.to;
     trace_options.size = setup.size;
-    trace_options.stop = stop;
+    trace_options.cancelled = cancelled;
     if (observer) { observer(0.0, "branch at the start of the range"); }
     const auto departure = setup.departure();
     if (!departure) {
         result.ending = Ending::some_failed;
         result.reason = "no periodic motion of one drive cycle was reached at the start of the range";
+        (void)cut_short(setup.cost, result);
         return result;
     }
     const branch::Branch main = branch::trace(setup.family, *departure, trace_options);
@@ -98,9 +100,9 @@ LocusResult run_locus(const StudyProblem& problem, const LocusOptions& study, co
     options.size = setup.size;
     options.exact = round_values(result.from, result.to, study.steps);
     options.max_points = study.max_points;
-    options.stop = stop;
+    options.cancelled = cancelled;
     for (const branch::BoundaryPoint& found : main.boundaries) {
-        if (found.kind != study.kind || (stop && stop())) { continue; }
+        if (found.kind != study.kind || setup.cost.allowance() != flow::Status::ok) { continue; }
         const auto on_known = [&](const branch::Locus& curve) { return ends_at(curve, found, result.from); };
         if (std::any_of(result.curves.begin(), result.curves.end(), on_known)) { continue; }
         if (observer) { observer(-1.0, "curve " + std::to_string(result.curves.size() + 1)); }
@@ -112,9 +114,8 @@ LocusResult run_locus(const StudyProblem& problem, const LocusOptions& study, co
     for (const branch::Locus& curve : result.curves) {
         if (curve.end == branch::End::budget) { result.ending = Ending::budget; }
     }
-    if (stop && stop()) {
-        result.ending = Ending::interrupted;
-        result.reason = "stopped before every curve was complete";
+    if (cut_short(setup.cost, result)) {
+        if (result.ending == Ending::interrupted) { result.reason = "stopped before every curve was complete"; }
     } else if (result.curves.empty()) {
         result.ending = Ending::infeasible;
         result.reason = "the main branch has no such boundary at the start of the range";

@@ -34,6 +34,6 @@ struct LocusResult {
 /// The boundaries of the main branch at `from`, each followed until the key leaves its range or the boundary ends; one
 /// that lies on the curve of another is not followed again. Throws std::invalid_argument for a missing key or range.
 LocusResult run_locus(const StudyProblem& problem, const LocusOptions& study, const Observer& observer,
-                      const StopRequest& stop);
+                      const numerics::CancelRequest& cancelled);
 
 }  // namespace percuss::verbs

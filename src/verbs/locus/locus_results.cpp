@@ -106,14 +106,15 @@ std::string locus_csv(const ProblemFile& problem, const LocusResult& result) {
     const model::KeyInfo& info = model::key_info(result.along);
     const std::vector<Column> columns = {{"curve", ""},
                                          {std::string(info.name), info.unit == "1" ? "" : std::string(info.unit)},
-                                         {"omega", "rad per Gamma"},
+                                         {"omega", si ? "rad/s" : ""},
                                          {"drive_frequency", si ? "Hz" : ""},
                                          {"peak_force", si ? "N" : ""}};
     std::vector<std::vector<std::string>> rows;
     for (std::size_t c = 0; c < result.curves.size(); ++c) {
         for (const LocusPoint& p : result.curves[c].points) {
             const model::Scales scales = scales_of(problem, result, p.value);
-            rows.push_back({std::to_string(c), model::exact_text(p.value), model::exact_text(p.omega),
+            rows.push_back({std::to_string(c), model::exact_text(p.value),
+                            model::exact_text(in_user_units(problem, p.omega, scales.time)),
                             model::exact_text(design::drive_frequency(p.omega, scales)),
                             model::exact_text(scales.force * p.peak_force)});
         }

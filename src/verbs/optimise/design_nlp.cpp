@@ -131,6 +131,9 @@ optimise::Evaluation DesignNlp::translate(const design::Evaluation& evaluation, 
 void DesignNlp::add_exclusions(const design::Evaluation& evaluation, const Vector& x, bool with_gradient, int first,
                                optimise::Evaluation& out) const {
     if (exclusions_.empty()) { return; }
+    flow::Cost cost;
+    cost.cancelled = cancelled_;
+    cost.step_budget = design::default_step_budget;
     const model::Specification spec = specification(x);
     std::vector<model::Key> keys;
     if (with_gradient) {
@@ -139,8 +142,12 @@ void DesignNlp::add_exclusions(const design::Evaluation& evaluation, const Vecto
     for (std::size_t i = 0; i < exclusions_.size(); ++i) {
         const int row = first + static_cast<int>(i);
         const ExclusionValue value =
-            verbs::evaluate(exclusions_[i], evaluator_.system(spec), spec, evaluation.operating_point.omega,
+            verbs::evaluate(exclusions_[i], evaluator_.system(spec, &cost), spec, evaluation.operating_point.omega,
                             evaluation.gradients.omega, keys);
+        if (cost.allowance() != flow::Status::ok) {
+            out.constraints[row] = design::absent;  // the window is not known here: the evaluation fails
+            return;
+        }
         out.constraints[row] = value.value;
         for (std::size_t j = 0; j < keys.size(); ++j) {
             const int column = static_cast<int>(j);

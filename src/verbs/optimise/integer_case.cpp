@@ -116,8 +116,11 @@ void add_windows(Report& r) {
         LimitReport report;
         report.name = "omega";
         report.upper = e.below;
+        // In rad/s as documents tell it; a nondimensional problem has omega itself.
+        const double time = spec.type->nondimensional ? 1.0 : model::scale(spec).scales.time;
         report.limit = e.below ? (1.0 - e.margin) * window.lower : (1.0 + e.margin) * window.upper;
-        report.value = r.best.verified->operating_point.omega;
+        report.limit /= time;
+        report.value = r.best.verified->operating_point.omega / time;
         report.text = std::string(e.below ? "omega below" : "omega above") + " the window of the motion of period " +
                       std::to_string(e.intruder->period);
         report.active = std::abs(report.value / report.limit - 1.0) <= activity;

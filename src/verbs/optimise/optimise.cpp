@@ -61,14 +61,14 @@ public:
           observer_(observer),
           cancelled_(cancelled) {}
 
-    OptimiseStudyResult run() {
+    OptimiseResult run() {
         const std::vector<model::Specification> fixed = enumerate_integers(problem_.design);
         std::vector<IntegerCase> cases = solve_each(fixed);
         Refutation refutation;
         if (problem_.design.single_stable > design::SingleStable::orbit) {
             refutation = refute(cases, solver_, problem_, observer_, cancelled_);
         }
-        OptimiseStudyResult result = conclude(cases, fixed.size());
+        OptimiseResult result = conclude(cases, fixed.size());
         result.counterexamples = std::move(refutation.counterexamples);
         result.objective_unrefuted = refutation.objective_unrefuted;
         return result;
@@ -96,8 +96,8 @@ private:
     }
 
     /// The best certified case; without one the best feasible; without that an account of what stood in the way.
-    OptimiseStudyResult conclude(const std::vector<IntegerCase>& cases, std::size_t expected) const {
-        OptimiseStudyResult result;
+    OptimiseResult conclude(const std::vector<IntegerCase>& cases, std::size_t expected) const {
+        OptimiseResult result;
         for (const IntegerCase& c : cases) {
             result.per_layers.push_back(c.report);
             result.evaluations += c.evaluations;
@@ -132,7 +132,7 @@ private:
         });
     }
 
-    void fill(OptimiseStudyResult& result, const IntegerCase& best) const {
+    void fill(OptimiseResult& result, const IntegerCase& best) const {
         result.best = *best.verified;
         result.kkt_residual = best.certificate.residual;
         const Quantity objective = problem_.design.objectives.front().quantity;
@@ -152,13 +152,13 @@ private:
 std::string_view to_string(OptimiseStatus status) { return row_of(status).name; }
 Ending ending_of(OptimiseStatus status) { return row_of(status).ending; }
 
-OptimiseStudyResult run_optimise(const StudyProblem& problem, RowSink* rows, const Observer& observer,
-                                 const numerics::CancelRequest& cancelled) {
+OptimiseResult run_optimise(const StudyProblem& problem, RowSink* rows, const Observer& observer,
+                            const numerics::CancelRequest& cancelled) {
     const auto start = std::chrono::steady_clock::now();
     check(problem);
     if (rows != nullptr) { rows->header(design_columns(problem.design)); }
     Optimisation optimisation(problem, rows, observer, cancelled);
-    OptimiseStudyResult result = optimisation.run();
+    OptimiseResult result = optimisation.run();
     if (observer) { observer(1.0, "done"); }
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;

@@ -53,7 +53,7 @@ struct Counterexample {
     std::string remedy;  ///< "operate below the window", "operate above the window" or why nothing could be done
 };
 
-struct OptimiseStudyResult {
+struct OptimiseResult {
     Ending ending = Ending::not_run;
     OptimiseStatus status = OptimiseStatus::not_run;
     std::string reason;                                 ///< one sentence when not optimal
@@ -71,7 +71,7 @@ struct OptimiseStudyResult {
 
 /// Throws std::invalid_argument for a problem without variables or without exactly one objective.
 /// Rows: every evaluated design (variables, objective, limits, status).
-OptimiseStudyResult run_optimise(const StudyProblem& problem, RowSink* rows, const Observer& observer,
-                                 const numerics::CancelRequest& cancelled);
+OptimiseResult run_optimise(const StudyProblem& problem, RowSink* rows, const Observer& observer,
+                            const numerics::CancelRequest& cancelled);
 
 }  // namespace percuss::verbs

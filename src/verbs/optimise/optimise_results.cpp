@@ -57,7 +57,7 @@ std::string limit_unit(const ProblemFile& problem, const LimitReport& limit) {
 }
 
 /// Values in the unit of the bound; the multiplier is what the objective gains per that unit.
-Block limits_block(const ProblemFile& problem, const OptimiseStudyResult& result) {
+Block limits_block(const ProblemFile& problem, const OptimiseResult& result) {
     Block block{"Limits", "", {"limit", "value", "bound", "active", "gain per unit of room"}, {}};
     const auto& objectives = problem.design.objectives;
     const std::string gained =
@@ -76,7 +76,7 @@ Block limits_block(const ProblemFile& problem, const OptimiseStudyResult& result
     return block;
 }
 
-Block integer_cases_block(const ProblemFile& problem, const OptimiseStudyResult& result) {
+Block integer_cases_block(const ProblemFile& problem, const OptimiseResult& result) {
     Block block{"Integer cases", "", {"layers", "status", "objective", "KKT residual", "remark"}, {}};
     const auto& objectives = problem.design.objectives;
     for (const IntegerCaseReport& report : result.per_layers) {
@@ -89,7 +89,7 @@ Block integer_cases_block(const ProblemFile& problem, const OptimiseStudyResult&
     return block;
 }
 
-Block counterexamples_block(const ProblemFile& problem, const OptimiseStudyResult& result) {
+Block counterexamples_block(const ProblemFile& problem, const OptimiseResult& result) {
     Block block{"Counterexamples: motions that were found beside the best design so far",
                 "",
                 {"layers", "objective there", "period", "peak force", "exists from", "to", "remedy"},
@@ -109,7 +109,7 @@ Block counterexamples_block(const ProblemFile& problem, const OptimiseStudyResul
 }
 
 /// What it cost to be alone.
-Block price_block(const ProblemFile& problem, const OptimiseStudyResult& result) {
+Block price_block(const ProblemFile& problem, const OptimiseResult& result) {
     if (std::isnan(result.objective_unrefuted) || result.status != OptimiseStatus::optimal) { return sentence(""); }
     const Quantity objective = problem.design.objectives.front().quantity;
     const double now = result.best.value(objective);
@@ -121,7 +121,7 @@ Block price_block(const ProblemFile& problem, const OptimiseStudyResult& result)
 
 }  // namespace
 
-std::string optimise_document(const ProblemFile& problem, const OptimiseStudyResult& result) {
+std::string optimise_document(const ProblemFile& problem, const OptimiseResult& result) {
     Json out = document_beginning(problem, "percuss/optimise/1");
     out["status"] = to_string(result.status);
     out["reason"] = result.reason;
@@ -155,7 +155,7 @@ std::string optimise_document(const ProblemFile& problem, const OptimiseStudyRes
     return results::printed(out);
 }
 
-Presentation present_optimum(const ProblemFile& problem, const OptimiseStudyResult& result) {
+Presentation present_optimum(const ProblemFile& problem, const OptimiseResult& result) {
     Presentation out;
     out.title = problem.name + ": optimum";
     out.blocks.push_back(results::status_sentence(to_string(result.status), result.reason));
@@ -172,7 +172,7 @@ Presentation present_optimum(const ProblemFile& problem, const OptimiseStudyResu
     return out;
 }
 
-std::string layers_csv(const ProblemFile& problem, const OptimiseStudyResult& result) {
+std::string layers_csv(const ProblemFile& problem, const OptimiseResult& result) {
     std::vector<Column> columns = {{"layers", ""}, {"status", ""}};
     for (const design::Objective& objective : problem.design.objectives) {
         columns.push_back(
@@ -198,7 +198,7 @@ std::string layers_csv(const ProblemFile& problem, const OptimiseStudyResult& re
     return csv_text(columns, rows);
 }
 
-std::string limits_csv(const ProblemFile& problem, const OptimiseStudyResult& result) {
+std::string limits_csv(const ProblemFile& problem, const OptimiseResult& result) {
     const std::vector<Column> columns = {{"limit", ""},
                                          {"unit", ""},
                                          {"value", "in that unit"},

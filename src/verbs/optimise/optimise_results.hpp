@@ -11,14 +11,14 @@
 namespace percuss::verbs {
 
 /// percuss/optimise/1
-std::string optimise_document(const problem::ProblemFile& problem, const OptimiseStudyResult& result);
+std::string optimise_document(const problem::ProblemFile& problem, const OptimiseResult& result);
 
-results::Presentation present_optimum(const problem::ProblemFile& problem, const OptimiseStudyResult& result);
+results::Presentation present_optimum(const problem::ProblemFile& problem, const OptimiseResult& result);
 
 /// One row per value of the enumerated variable.
-std::string layers_csv(const problem::ProblemFile& problem, const OptimiseStudyResult& result);
+std::string layers_csv(const problem::ProblemFile& problem, const OptimiseResult& result);
 
 /// One row per limit, with value and multiplier; SI or nondimensional.
-std::string limits_csv(const problem::ProblemFile& problem, const OptimiseStudyResult& result);
+std::string limits_csv(const problem::ProblemFile& problem, const OptimiseResult& result);
 
 }  // namespace percuss::verbs

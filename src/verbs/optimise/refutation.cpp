@@ -100,8 +100,11 @@ private:
     /// The window of the intruder becomes a constraint.
     void avoid(IntegerCase& c, const design::Evaluation& evaluation, Counterexample& account) {
         const model::Specification spec = specification_of(c);
+        flow::Cost cost;
+        cost.cancelled = cancelled_;
+        cost.step_budget = design::default_step_budget;
         const auto intruder = std::make_shared<const design::Intruder>(design::find_window(
-            solver_.evaluator(), spec, evaluation.operating_point.omega, evaluation.uniqueness.attractors));
+            solver_.evaluator(), spec, evaluation.operating_point.omega, evaluation.uniqueness.attractors, &cost));
         if (!intruder->ok) {
             account.remedy = intruder->trouble;
             return reject(c, evaluation.reason + "; " + intruder->trouble);

@@ -12,7 +12,7 @@ Outcome run(Session& session) {
     const problem::ProblemFile& problem = session.problem();
     require_one_objective(problem.design);
     session.start({"evaluations.csv", "quantities.csv", "gradients.csv", "layers.csv", "limits.csv"});
-    OptimiseStudyResult result;
+    OptimiseResult result;
     {
         const auto rows = session.table("evaluations.csv");
         result = run_optimise(session.study(), rows.get(), session.observer(), session.cancelled());

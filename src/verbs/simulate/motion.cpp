@@ -9,7 +9,7 @@ namespace {
 constexpr int patience = 2000;        // drive cycles
 constexpr double near_enough = 1e-5;  // of a settled state to its orbit, and of two states of one motion, relative
 
-void polish(const flow::System& system, Motion& motion) {
+void polish(const flow::System& system, SettledMotion& motion) {
     const orbit::Orbit found = orbit::polish_orbit(system, motion.own_state, motion.period);
     if (!found.ok()) { return; }
     const flow::State exact = orbit::state_at_zero(system, found);
@@ -22,8 +22,8 @@ void polish(const flow::System& system, Motion& motion) {
 
 }  // namespace
 
-Motion identify_motion(const flow::System& system, const flow::State& start, const model::Scales& scales) {
-    Motion motion;
+SettledMotion identify_motion(const flow::System& system, const flow::State& start, const model::Scales& scales) {
+    SettledMotion motion;
     orbit::SettlingOptions options;
     options.max_cycles = patience;
     const orbit::Settling settling = orbit::settle_until_repeating(system, start, options);
@@ -50,7 +50,7 @@ Motion identify_motion(const flow::System& system, const flow::State& start, con
     return motion;
 }
 
-bool same_motion(const flow::System& system, const Motion& a, const Motion& b) {
+bool same_motion(const flow::System& system, const SettledMotion& a, const SettledMotion& b) {
     if (!a.settled || !b.settled || a.period != b.period) { return false; }
     flow::State state = a.own_state;
     for (int cycle = 0; cycle < a.period; ++cycle) {

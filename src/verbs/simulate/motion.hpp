@@ -12,7 +12,7 @@
 namespace percuss::verbs {
 
 /// A motion in the problem's units.
-struct Motion {
+struct SettledMotion {
     bool settled = false;
     int period = 0;                           ///< drive cycles; 0 unless settled
     int contacts = 0;                         ///< per period; in 12 cycles unless settled
@@ -32,9 +32,9 @@ struct Motion {
 
 /// Follows the motion from `start` at phase 0 until it repeats, and polishes it where that converges to an orbit that
 /// stands where the motion settled.
-Motion identify_motion(const flow::System& system, const flow::State& start, const model::Scales& scales);
+SettledMotion identify_motion(const flow::System& system, const flow::State& start, const model::Scales& scales);
 
 /// Whether two settled motions are the same one, one perhaps some cycles later.
-bool same_motion(const flow::System& system, const Motion& a, const Motion& b);
+bool same_motion(const flow::System& system, const SettledMotion& a, const SettledMotion& b);
 
 }  // namespace percuss::verbs

@@ -4,6 +4,7 @@
 #include "design/integrators.hpp"
 #include "design/operating_point.hpp"
 #include "orbit/polish.hpp"
+#include "verbs/limits.hpp"
 #include "verbs/simulate/time_series.hpp"
 
 #include <algorithm>
@@ -18,10 +19,14 @@ namespace {
 
 using std::numbers::pi;
 
+/// A membrane that strikes takes 10 to 20 steps of the Taylor integrator a drive cycle, some 20 times as many of
+/// ARKODE.
+constexpr double steps_per_cycle = 2000.0;
+
 /// The actuator at its operating point, at the start of the series.
 struct Scenario {
     model::Scaled scaled;
-    design::Integrators scene;
+    design::Integrators integrators;
     flow::Cost cost;
     flow::System system;
     flow::State start{};
@@ -39,7 +44,7 @@ void check(const SimulateOptions& study) {
 
 /// False when there is no frequency to run at; the result says why.
 bool choose_frequency(const StudyProblem& problem, Scenario& at, SimulateResult& result) {
-    const flow::System scout{at.scene.scout.get(), at.scaled.parameters, &at.cost};
+    const flow::System scout{at.integrators.scout.get(), at.scaled.parameters, &at.cost};
     design::OperationOptions options;
     options.margin = problem.design.margin;
     const design::Operation operation =
@@ -67,7 +72,9 @@ std::optional<flow::State> orbit_at_zero(const StudyProblem& problem, const Simu
         result.reason = "no orbit to start on: Newton's method from orbit.start did not converge";
     } else if (result.operating_point.edge_kind == design::EdgeKind::given) {
         const design::Evaluator evaluator(problem.design);
-        const auto orbit = evaluator.orbit(problem.design.actuator, std::nullopt, study.orbit_period, {}).orbit;
+        design::Demand demand;
+        demand.cancelled = at.cost.cancelled;
+        const auto orbit = evaluator.orbit(problem.design.actuator, std::nullopt, study.orbit_period, demand).orbit;
         if (!orbit.state.empty()) {
             return design::from_user(orbit.state, "orbit", *problem.design.actuator.type, at.scaled.scales,
                                      at.system.states());
@@ -120,9 +127,9 @@ struct Course {
 };
 
 /// Follows the series cycle by cycle, sample by sample, with the kick where it belongs.
-class Run {
+class SeriesWriter {
 public:
-    Run(const SimulateOptions& study, const model::Scales& scales, TimeSeries& series)
+    SeriesWriter(const SimulateOptions& study, const model::Scales& scales, TimeSeries& series)
         : study_(study),
           series_(series),
           kick_speed_(study.kick ? study.kick->velocity * scales.time / scales.length : 0.0) {}
@@ -197,7 +204,7 @@ private:
 };
 
 /// The motion that would have gone on without the kick, from the next phase 0.
-Motion undisturbed(const Scenario& at, const Course& course, double kick_at) {
+SettledMotion undisturbed(const Scenario& at, const Course& course, double kick_at) {
     flow::State state = *course.at_kick;
     const double rest_of_cycle = std::ceil(kick_at) - kick_at;
     if (rest_of_cycle > 0.0) {
@@ -209,7 +216,7 @@ Motion undisturbed(const Scenario& at, const Course& course, double kick_at) {
         flow::Result result;
         at.system.run(request, result);
         if (result.status != flow::Status::ok) {
-            Motion lost;
+            SettledMotion lost;
             lost.status = result.status;
             return lost;
         }
@@ -224,7 +231,7 @@ double change_over(const flow::System& system, const Strobes& strobes, int perio
     return orbit::relative_distance(system, strobes[strobes.size() - 1 - back], strobes.back());
 }
 
-KickOutcome outcome_of(const flow::System& system, const Motion& before, const Motion& after) {
+KickOutcome outcome_of(const flow::System& system, const SettledMotion& before, const SettledMotion& after) {
     if (!before.settled || !after.settled) { return KickOutcome::undecided; }
     if (same_motion(system, before, after)) { return KickOutcome::recovered; }
     const bool strikes = before.peak_force > 0.0 || after.peak_force > 0.0;
@@ -242,16 +249,11 @@ void judge(const SimulateOptions& study, const Scenario& at, const Course& cours
 }
 
 /// The series itself; false when it did not reach its end.
-bool follow(const SimulateOptions& study, Run& run, const TimeSeries& series, const Observer& observer,
-            const StopRequest& stop, SimulateResult& result) {
-    run.begin();
+bool follow(const SimulateOptions& study, SeriesWriter& writer, const TimeSeries& series, const Observer& observer,
+            SimulateResult& result) {
+    writer.begin();
     for (int cycle = 0; cycle < study.cycles; ++cycle) {
-        if (stop && stop()) {
-            result.ending = Ending::interrupted;
-            result.reason = "stopped before the end";
-            return false;
-        }
-        if (!run.cycle(cycle)) {
+        if (!writer.cycle(cycle)) {
             result.ending = Ending::some_failed;
             result.reason = "the motion was lost in drive cycle " + std::to_string(cycle + 1) + ": " +
                             std::string(flow::to_string(series.status()));
@@ -263,19 +265,19 @@ bool follow(const SimulateOptions& study, Run& run, const TimeSeries& series, co
 }
 
 void simulate(const StudyProblem& problem, const SimulateOptions& study, Scenario& at, RowSink* rows, RowSink* contacts,
-              const Observer& observer, const StopRequest& stop, SimulateResult& result) {
+              const Observer& observer, SimulateResult& result) {
     if (!choose_frequency(problem, at, result) || !choose_start(problem, study, at, result)) { return; }
     TimeSeries series(at.system, problem.design.actuator, at.scaled.scales, at.start, rows, contacts);
-    Run run(study, at.scaled.scales, series);
-    const bool complete = follow(study, run, series, observer, stop, result);
+    SeriesWriter writer(study, at.scaled.scales, series);
+    const bool complete = follow(study, writer, series, observer, result);
     series.finish();
     result.cycles = series.position();
     result.contacts = series.contacts_met();
     result.peak_force = at.scaled.scales.force * series.peak_force();
     result.end_state = design::to_user(series.state(), at.scaled.scales, at.system.states());
     if (!complete) { return; }
-    judge(study, at, run.course(), series, result);
-    result.ending = Ending::verified;
+    judge(study, at, writer.course(), series, result);
+    if (!cut_short(at.cost, result)) { result.ending = Ending::verified; }
 }
 
 }  // namespace
@@ -292,13 +294,19 @@ std::string_view to_string(KickOutcome outcome) {
 }
 
 SimulateResult run_simulate(const StudyProblem& problem, const SimulateOptions& study, RowSink* series,
-                            RowSink* contacts, const Observer& observer, const StopRequest& stop) {
+                            RowSink* contacts, const Observer& observer, const numerics::CancelRequest& cancelled) {
     const auto begun = std::chrono::steady_clock::now();
     check(study);
     SimulateResult result;
-    Scenario at{model::scale(problem.design.actuator), design::make_integrators(problem.design), {}, {}, {}, {}};
-    at.system = {at.scene.own.get(), at.scaled.parameters, &at.cost};
-    simulate(problem, study, at, series, contacts, observer, stop, result);
+    Scenario at{model::scale(problem.design.actuator),
+                design::make_integrators(problem.design),
+                limited_cost(cancelled, study.cycles, steps_per_cycle),
+                {},
+                {},
+                {}};
+    at.system = {at.integrators.own.get(), at.scaled.parameters, &at.cost};
+    simulate(problem, study, at, series, contacts, observer, result);
+    if (result.ending != Ending::verified) { (void)cut_short(at.cost, result); }
     result.periods = at.cost.periods();
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     return result;

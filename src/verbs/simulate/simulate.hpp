@@ -51,16 +51,16 @@ struct SimulateResult {
         Ending::not_run;  ///< verified; infeasible: no impact, so no edge to run at; some_failed; interrupted
     std::string reason;   ///< one sentence unless verified
     design::OperatingPoint operating_point;
-    std::vector<double> start;           ///< at theta = 0, in the problem's units
-    std::vector<double> end_state;       ///< at the end of the series
-    double cycles = 0.0;                 ///< drive cycles in the series
-    long contacts = 0;                   ///< entries in the series
-    double peak_force = design::absent;  ///< in the series
-    std::optional<Motion> before;        ///< with a kick: the motion that would have settled without it
+    std::vector<double> start;            ///< at theta = 0, in the problem's units
+    std::vector<double> end_state;        ///< at the end of the series
+    double cycles = 0.0;                  ///< drive cycles in the series
+    long contacts = 0;                    ///< entries in the series
+    double peak_force = design::absent;   ///< in the series
+    std::optional<SettledMotion> before;  ///< with a kick: the motion that would have settled without it
     /// With a kick: relative strobed change over one period of that motion, in the last cycles before the kick; absent
     /// when the series is shorter.
     double change_before = design::absent;
-    std::optional<Motion> after;  ///< the motion that settles after the end of the series
+    std::optional<SettledMotion> after;  ///< the motion that settles after the end of the series
     KickOutcome outcome = KickOutcome::none;
     double seconds = 0.0;
     double periods = 0.0;  ///< drive cycles integrated
@@ -69,6 +69,6 @@ struct SimulateResult {
 /// Tables, null for none. `series`: time, cycle, phase, state, stop force, drive; at a kick one row before and one
 /// after. `contacts`: one row per contact. Throws std::invalid_argument for options out of range.
 SimulateResult run_simulate(const StudyProblem& problem, const SimulateOptions& study, RowSink* series,
-                            RowSink* contacts, const Observer& observer, const StopRequest& stop);
+                            RowSink* contacts, const Observer& observer, const numerics::CancelRequest& cancelled);
 
 }  // namespace percuss::verbs

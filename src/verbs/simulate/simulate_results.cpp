@@ -54,7 +54,7 @@ Json kick_of(const ProblemFile& problem) {
     return out;
 }
 
-Json motion_of(const std::optional<Motion>& motion) {
+Json motion_of(const std::optional<SettledMotion>& motion) {
     if (!motion) { return nullptr; }
     return {{"settled", motion->settled},
             {"period", motion->period},
@@ -84,7 +84,7 @@ std::string outcome_sentence(KickOutcome outcome) {
 
 Block motions_block(const ProblemFile& problem, const SimulateResult& result) {
     Block block{"Settled motion", "", {"property"}, {}};
-    std::vector<const Motion*> motions;
+    std::vector<const SettledMotion*> motions;
     if (result.before) {
         block.columns.emplace_back("without the kick");
         motions.push_back(&*result.before);
@@ -95,17 +95,19 @@ Block motions_block(const ProblemFile& problem, const SimulateResult& result) {
     }
     const auto add = [&](const std::string& name, const auto& text) {
         std::vector<std::string> row = {name};
-        for (const Motion* motion : motions) { row.push_back(text(*motion)); }
+        for (const SettledMotion* motion : motions) { row.push_back(text(*motion)); }
         block.rows.push_back(std::move(row));
     };
-    add("settled", [](const Motion& m) { return std::string(m.settled ? "yes" : "no"); });
-    add("period in drive cycles", [](const Motion& m) { return m.settled ? std::to_string(m.period) : "-"; });
-    add("contacts per period (not settled: in 12 cycles)", [](const Motion& m) { return std::to_string(m.contacts); });
-    add("peak_force", [&](const Motion& m) { return quantity_text(problem, Quantity::peak_force, m.peak_force); });
-    add("amplitude", [&](const Motion& m) { return quantity_text(problem, Quantity::amplitude, m.amplitude); });
-    add("max_multiplier", [](const Motion& m) { return number(m.max_multiplier, 9); });
-    add("solved for", [](const Motion& m) { return std::string(m.polished ? "by Newton's method" : "no"); });
-    add("drive cycles followed to settle", [](const Motion& m) { return std::to_string(m.cycles); });
+    add("settled", [](const SettledMotion& m) { return std::string(m.settled ? "yes" : "no"); });
+    add("period in drive cycles", [](const SettledMotion& m) { return m.settled ? std::to_string(m.period) : "-"; });
+    add("contacts per period (not settled: in 12 cycles)",
+        [](const SettledMotion& m) { return std::to_string(m.contacts); });
+    add("peak_force",
+        [&](const SettledMotion& m) { return quantity_text(problem, Quantity::peak_force, m.peak_force); });
+    add("amplitude", [&](const SettledMotion& m) { return quantity_text(problem, Quantity::amplitude, m.amplitude); });
+    add("max_multiplier", [](const SettledMotion& m) { return number(m.max_multiplier, 9); });
+    add("solved for", [](const SettledMotion& m) { return std::string(m.polished ? "by Newton's method" : "no"); });
+    add("drive cycles followed to settle", [](const SettledMotion& m) { return std::to_string(m.cycles); });
     return block;
 }
 

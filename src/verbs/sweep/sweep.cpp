@@ -3,6 +3,7 @@
 #include "design/integrators.hpp"
 #include "model/number_text.hpp"
 #include "orbit/frequency_sweep.hpp"
+#include "verbs/limits.hpp"
 #include "verbs/sweep/sweep_findings.hpp"
 
 #include <algorithm>
@@ -19,21 +20,24 @@ namespace {
 
 constexpr double default_from = 0.6;  // of the linear resonance
 constexpr double default_to = 2.0;
+/// The longest sweep that options allow must fit, at the 10 to 20 steps of the Taylor integrator a drive cycle.
+constexpr double steps_per_cycle = 50.0;
 
 /// What both directions share.
 struct Sweep {
-    Sweep(const design::Problem& problem, const SweepOptions& how, const Observer& watcher, const StopRequest& stopper)
+    Sweep(const design::Problem& problem, const SweepOptions& how, const Observer& watcher,
+          const numerics::CancelRequest& request)
         : study(how),
           observer(watcher),
-          stop(stopper),
+          cancelled(request),
           scaled(model::scale(problem.actuator)),
-          scene(design::make_integrators(problem)) {}
+          integrators(design::make_integrators(problem)) {}
 
     const SweepOptions& study;
     const Observer& observer;
-    const StopRequest& stop;
+    const numerics::CancelRequest& cancelled;
     model::Scaled scaled;
-    design::Integrators scene;
+    design::Integrators integrators;
     double from = 0.0;  ///< omega
     double to = 0.0;
     std::atomic<long> points_done = 0;
@@ -42,6 +46,11 @@ struct Sweep {
     [[nodiscard]] long points_in_all() const {
         return 2L * (study.mode == SweepMode::steps ? study.steps + 1 : study.chirp_cycles);
     }
+    /// Most drive cycles of one direction.
+    [[nodiscard]] double cycles_in_all() const {
+        return study.mode == SweepMode::steps ? (study.steps + 1.0) * study.max_cycles
+                                              : static_cast<double>(study.chirp_cycles) + study.max_cycles;
+    }
     /// False when the sweep must end.
     bool report(const std::string& line) {
         const long done = ++points_done;
@@ -49,7 +58,7 @@ struct Sweep {
             const std::lock_guard lock(mutex);
             observer(static_cast<double>(done) / static_cast<double>(points_in_all()), line);
         }
-        return !(stop && stop());
+        return !(cancelled && cancelled());
     }
 };
 
@@ -77,6 +86,11 @@ SweepPoint in_user_units(const orbit::SweptPoint& swept, const model::Scales& sc
     return point;
 }
 
+/// A point that a limit cut short is none: nothing was found out there.
+bool is_cut_short(flow::Status status) {
+    return status == flow::Status::cancelled || status == flow::Status::budget_spent;
+}
+
 std::string lost(flow::Status status, double omega) {
     return "the motion was lost at omega = " + std::to_string(omega) + ": " + std::string(flow::to_string(status));
 }
@@ -102,9 +116,10 @@ std::vector<double> frequencies(const Sweep& sweep, bool forward) {
 void step(Sweep& sweep, const flow::System& system, const flow::State& rest, SweepDirection& direction) {
     orbit::step_sweep(system, frequencies(sweep, direction.forward), rest, settling_options(sweep.study),
                       [&](const orbit::SweptPoint& swept) {
-                          direction.points.push_back(in_user_units(swept, sweep.scaled.scales, system.states()));
                           const auto status =
                               swept.settling.status != flow::Status::ok ? swept.settling.status : swept.extremes.status;
+                          if (is_cut_short(status)) { return false; }
+                          direction.points.push_back(in_user_units(swept, sweep.scaled.scales, system.states()));
                           if (status != flow::Status::ok) { direction.trouble = lost(status, swept.omega); }
                           return sweep.report("step sweep");
                       });
@@ -120,6 +135,7 @@ void chirp(Sweep& sweep, const flow::System& system, const flow::State& rest, Sw
         return;
     }
     orbit::chirp(system, from, to, sweep.study.chirp_cycles, settled.state, [&](const orbit::ChirpCycle& cycle) {
+        if (is_cut_short(cycle.extremes.status)) { return false; }
         direction.points.push_back(in_user_units(cycle.omega, cycle.extremes, sweep.scaled.scales));
         direction.points.back().cycles = 1;
         if (cycle.extremes.status != flow::Status::ok) { direction.trouble = lost(cycle.extremes.status, cycle.omega); }
@@ -131,11 +147,13 @@ void chirp(Sweep& sweep, const flow::System& system, const flow::State& rest, Sw
 SweepDirection go(Sweep& sweep, bool forward) {
     SweepDirection direction;
     direction.forward = forward;
-    flow::Cost cost;
-    flow::System system{sweep.scene.own.get(), sweep.scaled.parameters, &cost};
+    flow::Cost cost = limited_cost(sweep.cancelled, sweep.cycles_in_all(), steps_per_cycle);
+    flow::System system{sweep.integrators.own.get(), sweep.scaled.parameters, &cost};
     const flow::State rest = system.integrator->rest_state(system.parameters);
     (sweep.study.mode == SweepMode::steps ? step : chirp)(sweep, system, rest, direction);
     direction.periods = cost.periods();
+    direction.limit = cost.allowance();
+    if (direction.limit != flow::Status::ok) { direction.trouble = design::reason_of_limit(cost); }
     return direction;
 }
 
@@ -152,7 +170,7 @@ std::vector<SweepDirection> go_both_ways(Sweep& sweep, int jobs) {
 }
 
 void set_range(Sweep& sweep) {
-    const double resonance = sweep.scene.own->linear_resonance(sweep.scaled.parameters);
+    const double resonance = sweep.integrators.own->linear_resonance(sweep.scaled.parameters);
     const double unit = sweep.scaled.scales.time;
     sweep.from = sweep.study.from ? unit * *sweep.study.from : default_from * resonance;
     sweep.to = sweep.study.to ? unit * *sweep.study.to : default_to * resonance;
@@ -172,7 +190,7 @@ void check(const SweepOptions& study) {
 std::vector<Column> columns(const StudyProblem& problem, SweepMode mode) {
     const bool plain = problem.design.actuator.type->nondimensional;
     const auto unit = [&](const char* name) { return plain ? std::string() : std::string(name); };
-    std::vector<Column> header = {{"omega", ""}, {"drive_frequency", unit("Hz")}, {"direction", ""}};
+    std::vector<Column> header = {{"omega", unit("rad/s")}, {"drive_frequency", unit("Hz")}, {"direction", ""}};
     if (mode == SweepMode::steps) {
         for (const char* name : {"cycles", "settled", "period", "strobed_change", "remaining_error"}) {
             header.push_back({name, ""});
@@ -188,8 +206,9 @@ std::vector<Column> columns(const StudyProblem& problem, SweepMode mode) {
     return header;
 }
 
-std::vector<double> row_of(const SweepPoint& point, bool forward, SweepMode mode, std::size_t width) {
-    std::vector<double> row = {point.omega, point.drive_frequency, forward ? 1.0 : -1.0};
+/// `time`: the unit of time [s], 1 for a nondimensional problem.
+std::vector<double> row_of(const SweepPoint& point, bool forward, SweepMode mode, std::size_t width, double time) {
+    std::vector<double> row = {point.omega / time, point.drive_frequency, forward ? 1.0 : -1.0};
     if (mode == SweepMode::steps) {
         row.insert(row.end(), {static_cast<double>(point.cycles), point.settled ? 1.0 : 0.0,
                                static_cast<double>(point.period), point.strobed_change, point.remaining_error});
@@ -204,9 +223,11 @@ std::vector<double> row_of(const SweepPoint& point, bool forward, SweepMode mode
 void write(const SweepResult& result, const StudyProblem& problem, SweepMode mode, RowSink& rows) {
     const std::vector<Column> header = columns(problem, mode);
     rows.header(header);
+    const model::Specification& spec = problem.design.actuator;
+    const double time = spec.type->nondimensional ? 1.0 : model::scale(spec).scales.time;
     for (const SweepDirection& direction : result.directions) {
         for (const SweepPoint& point : direction.points) {
-            rows.row(row_of(point, direction.forward, mode, header.size()));
+            rows.row(row_of(point, direction.forward, mode, header.size(), time));
         }
     }
 }
@@ -215,12 +236,15 @@ void conclude(const Sweep& sweep, SweepResult& result) {
     long points = 0;
     for (const SweepDirection& direction : result.directions) {
         points += static_cast<long>(direction.points.size());
-        if (!direction.trouble.empty() && result.reason.empty()) {
-            result.ending = Ending::some_failed;
+        if (direction.limit == flow::Status::cancelled) {
+            result.ending = Ending::interrupted;
+            result.reason = "stopped before the end";
+        } else if (!direction.trouble.empty() && result.reason.empty()) {
+            result.ending = direction.limit == flow::Status::ok ? Ending::some_failed : Ending::budget;
             result.reason = (direction.forward ? "forward: " : "backward: ") + direction.trouble;
         }
     }
-    if (result.ending == Ending::some_failed) { return; }
+    if (result.ending != Ending::not_run) { return; }
     result.ending = points == sweep.points_in_all() ? Ending::verified : Ending::interrupted;
     if (result.ending == Ending::interrupted) { result.reason = "stopped before the end"; }
 }
@@ -228,10 +252,10 @@ void conclude(const Sweep& sweep, SweepResult& result) {
 }  // namespace
 
 SweepResult run_sweep(const StudyProblem& problem, const SweepOptions& study, RowSink* rows, const Observer& observer,
-                      const StopRequest& stop) {
+                      const numerics::CancelRequest& cancelled) {
     const auto start = std::chrono::steady_clock::now();
     check(study);
-    Sweep sweep(problem.design, study, observer, stop);
+    Sweep sweep(problem.design, study, observer, cancelled);
     set_range(sweep);
 
     SweepResult result;

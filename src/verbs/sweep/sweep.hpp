@@ -58,8 +58,9 @@ struct SweepDirection {
     bool forward = true;
     std::vector<SweepPoint> points;
     std::vector<SweepJump> jumps;
-    std::string trouble;   ///< why it ended early, empty if it did not
-    double periods = 0.0;  ///< drive cycles integrated
+    std::string trouble;                    ///< why it ended early, empty if it did not
+    double periods = 0.0;                   ///< drive cycles integrated
+    flow::Status limit = flow::Status::ok;  ///< cancelled, budget_spent: why it ended before its last point
 };
 
 /// The settled motions of both directions at the same frequencies.
@@ -75,7 +76,7 @@ struct SweepComparison {
 
 struct SweepResult {
     Ending ending = Ending::not_run;  ///< verified: both directions went through; some_failed: a motion was lost;
-                                      ///< interrupted: stopped early
+                                      ///< interrupted: cancelled
     std::string reason;               ///< one sentence unless verified
     double from = design::absent;     ///< drive frequency [Hz], or cycles per unit of nondimensional time
     double to = design::absent;
@@ -90,6 +91,6 @@ struct SweepResult {
 /// side, with the same bits. `rows`: every point, forward first, written at the end. Throws std::invalid_argument for
 /// options out of range.
 SweepResult run_sweep(const StudyProblem& problem, const SweepOptions& study, RowSink* rows, const Observer& observer,
-                      const StopRequest& stop);
+                      const numerics::CancelRequest& cancelled);
 
 }  // namespace percuss::verbs
