@@ -1,6 +1,9 @@
 // Verbs explore and merge as a user runs them.
 
 #include "program_run.hpp"
+#include "verbs/explore/exploration_text.hpp"
+#include "verbs/explore/explore_options.hpp"
+#include "verbs/verbs.hpp"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -186,6 +189,32 @@ TEST_CASE("gradients in the journal are the derivatives with respect to the unit
     // One-sided differences at both ends err by a step's share of the second derivative.
     CHECK(peak.at("dgsm_bound").get<double>() == doctest::Approx(squares / (pi * pi * variance)).epsilon(0.02));
     CHECK(peak.at("first_order").get<double>() == doctest::Approx(1.0).epsilon(1e-3));
+}
+
+TEST_CASE("the problem kept in a journal reads back to the same problem") {
+    using namespace percuss;
+    int problems = 0;
+    for (const auto& entry : fs::directory_iterator(fs::path(shipped("crawler.ini")).parent_path())) {
+        if (entry.path().extension() != ".ini") { continue; }
+        CAPTURE(entry.path().string());
+        const std::vector<problem::Setting> options = {{"explore.samples", "100000", true},
+                                                       {"explore.columns", "amplitude, status", true},
+                                                       {"uniqueness.starts", "1000000", true}};
+        problem::ProblemFile original = verbs::read_problem(entry.path(), options, problem::FrequencyUse::ranges);
+        original.design.sampling.seed = 18446744073709551615U;
+        const std::string text = verbs::exploration_text(original, "v2");
+        // Not asked to operate: problems of sweeps have no frequency and no edge.
+        if (!model::has_stop(original.design.actuator.law) && !model::has_frequency(original.design.actuator)) {
+            continue;
+        }
+        const problem::ProblemFile again = verbs::parse_exploration(original.name, text, 100000);
+        CHECK(verbs::exploration_text(again, "v2") == text);
+        CHECK(again.design.sampling.seed == original.design.sampling.seed);
+        CHECK(again.get<verbs::ExploreOptions>().samples == 100000);
+        CHECK(again.design.sampling.starts == 1000000);
+        ++problems;
+    }
+    CHECK(problems > 10);
 }
 
 TEST_CASE("killed at random moments and resumed: as if nothing had happened") {
