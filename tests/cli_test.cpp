@@ -74,7 +74,6 @@ TEST_CASE("wrong usage is told in one line") {
     } cases[] = {
         {{}, "verb"},
         {{"evalute", duffing}, "nearest one is evaluate"},
-        {{"explore", duffing}, "not available in this version"},
         {{"pareto", duffing}, "not available in this version"},
         {{"evaluate"}, "needs a problem file"},
         {{"evaluate", duffing, "another"}, "another"},

@@ -67,10 +67,10 @@ double parse_seconds(const Setting& option) {
     return seconds;
 }
 
-/// An option of a verb stands for a key, or is the flag for derivatives.
+/// An option of a verb stands for a key, or does something of its own.
 void apply(const Setting& option, const verbs::VerbOption& info, Arguments& arguments) {
-    if (info.key.empty()) {
-        arguments.run.gradients = true;
+    if (info.apply != nullptr) {
+        info.apply(option, arguments.run);
     } else {
         const std::string value = info.value.empty() ? std::string(info.key_value) : option.value;
         arguments.run.keys.push_back({std::string(info.key), value, true});
@@ -143,6 +143,11 @@ Arguments parse_arguments(std::span<const std::string> arguments) {
     for (const Setting& option : line.run_options) { apply(option, parsed); }
     if (parsed.help != Topic::none) { return parsed; }
     const std::string name(parsed.verb->name);
+    if (!parsed.verb->folders.empty()) {
+        if (line.positional.empty()) { throw ProblemError(name + " needs " + std::string(parsed.verb->folders)); }
+        parsed.run.folders.assign(line.positional.begin(), line.positional.end());
+        return parsed;
+    }
     if (line.positional.empty()) { throw ProblemError(name + " needs a problem file"); }
     if (line.positional.size() > 1) {
         throw ProblemError("unexpected argument '" + line.positional[1] + "' after the problem file " +

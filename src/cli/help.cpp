@@ -96,13 +96,16 @@ std::string general_help(std::size_t width) {
 
 std::string verb_help(const verbs::Verb& verb, std::size_t width) {
     Presentation help;
-    help.title = "percuss " + std::string(verb.name) + " PROBLEM [options]: " + std::string(verb.summary);
+    const std::string_view operand = verb.folders.empty() ? "PROBLEM" : verb.folders;
+    help.title =
+        "percuss " + std::string(verb.name) + " " + std::string(operand) + " [options]: " + std::string(verb.summary);
     Block own{"Options of " + std::string(verb.name), "", {"option", "meaning"}, {}};
     for (const verbs::VerbOption& option : verb.options) {
         own.rows.push_back({option_text(option.name, option.value), std::string(option.meaning)});
     }
     if (!own.rows.empty()) { help.blocks.push_back(own); }
     help.blocks.push_back(common_block());
+    if (!verb.folders.empty()) { return results::plain_text(help, width); }
     help.blocks.push_back(keys_block([&](const problem::Row& row) { return verbs::reads(verb, row); }));
     help.blocks.push_back(values_block());
     return results::plain_text(help, width);

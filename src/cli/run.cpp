@@ -6,12 +6,14 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #include "problem/problem_error.hpp"
+#include "results/journal_error.hpp"
 
 #include <chrono>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 
 namespace percuss::cli {
@@ -26,6 +28,19 @@ void complain(std::string message) {
         if (static_cast<unsigned char>(c) < ' ') { c = ' '; }
     }
     std::fprintf(stderr, "percuss: %s\n", message.c_str());
+}
+
+/// The same for a message of several lines: one, and the texts of two problems that differ.
+void complain_at_length(const std::string& message) {
+    std::istringstream lines(message);
+    std::string line;
+    for (bool is_first = true; std::getline(lines, line); is_first = false) {
+        if (is_first) {
+            complain(line);
+        } else {
+            std::fprintf(stderr, "%s\n", line.c_str());
+        }
+    }
 }
 
 void print(const std::string& text) {
@@ -95,6 +110,9 @@ int run_arguments(const Arguments& arguments) {
 int run(std::span<const std::string> arguments) {
     try {
         return run_arguments(parse_arguments(arguments));
+    } catch (const results::JournalError& error) {
+        complain_at_length(error.what());
+        return exit_bad_input;
     } catch (const problem::ProblemError& error) {
         complain(error.what());
         return exit_bad_input;

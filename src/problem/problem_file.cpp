@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace percuss::problem {
 
@@ -61,12 +62,12 @@ void read_section(const Section& section, void* options, const SettingList& sett
     }
 }
 
-ProblemFile assemble(const std::filesystem::path& file, std::span<const Setting> options,
-                     std::span<const Section> sections, FrequencyUse use, bool keep_going) {
-    const SettingList settings(merge_settings(read_settings(file, sections), options, sections));
+ProblemFile assemble(std::string name, std::vector<Setting> given, std::span<const Section> sections, FrequencyUse use,
+                     bool keep_going) {
+    const SettingList settings(std::move(given));
     Troubles troubles(keep_going);
     ProblemFile problem;
-    problem.name = file.stem().string();
+    problem.name = std::move(name);
 
     design::Problem& design = problem.design;
     design.actuator.type = &family_of(settings);
@@ -99,12 +100,19 @@ const void* options_of(const ProblemFile& problem, const Section& section) {
 
 ProblemFile read_problem(const std::filesystem::path& file, std::span<const Setting> options,
                          std::span<const Section> sections, FrequencyUse use) {
-    return assemble(file, options, sections, use, false);
+    return assemble(file.stem().string(), merge_settings(read_settings(file, sections), options, sections), sections,
+                    use, false);
+}
+
+ProblemFile parse_problem(const std::string& name, const std::string& text, std::span<const Section> sections,
+                          FrequencyUse use) {
+    return assemble(name, parse_settings(text, name, sections), sections, use, false);
 }
 
 ProblemFile inspect_problem(const std::filesystem::path& file, std::span<const Setting> options,
                             std::span<const Section> sections) {
-    return assemble(file, options, sections, FrequencyUse::operates, true);
+    return assemble(file.stem().string(), merge_settings(read_settings(file, sections), options, sections), sections,
+                    FrequencyUse::operates, true);
 }
 
 int problem_states(const ProblemFile& problem) { return static_cast<int>(states_of(*problem.design.actuator.type)); }

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -32,6 +33,7 @@ struct ResolvedSetting {
     std::string trouble;      ///< what is wrong with it, empty if nothing is
     std::string exact;        ///< for the hash where the text is rounded
     bool repeatable = false;  ///< one entry of a list
+    bool of_run = false;      ///< no part of the problem's identity, see Row
 };
 
 struct ProblemFile {
@@ -64,6 +66,14 @@ ProblemFile read_problem(const std::filesystem::path& file, std::span<const Sett
 /// settings. Throws ProblemError only when the file cannot be read or its lines are not settings.
 ProblemFile inspect_problem(const std::filesystem::path& file, std::span<const Setting> options,
                             std::span<const Section> sections);
+
+/// A problem from the text that problem_text() wrote, under a name of its own. Throws ProblemError.
+ProblemFile parse_problem(const std::string& name, const std::string& text, std::span<const Section> sections,
+                          FrequencyUse use = FrequencyUse::operates);
+
+/// The settings for which `told` says so, one "key = value" a line, SI or nondimensional; numbers read back to the same
+/// bits.
+std::string problem_text(const ProblemFile& problem, const std::function<bool(const ResolvedSetting&)>& told);
 
 /// Number of entries of a state.
 int problem_states(const ProblemFile& problem);

@@ -82,7 +82,12 @@ std::string as_written(const Setting& setting) {
 }
 
 std::vector<Setting> read_settings(const std::filesystem::path& file, std::span<const Section> sections) {
-    std::istringstream stream(read_text(file));
+    return parse_settings(read_text(file), file.string(), sections);
+}
+
+std::vector<Setting> parse_settings(const std::string& text, const std::string& source,
+                                    std::span<const Section> sections) {
+    std::istringstream stream(text);
     const auto description = describe_keys(sections);
     std::vector<Setting> settings;
     try {
@@ -95,8 +100,8 @@ std::vector<Setting> read_settings(const std::filesystem::path& file, std::span<
         }
         refuse_repetitions(settings, sections);
     } catch (const po::error& error) {
-        throw ProblemError(file.string() + ": " + error.what());
-    } catch (const ProblemError& error) { throw ProblemError(file.string() + ": " + error.what()); }
+        throw ProblemError(source + ": " + error.what());
+    } catch (const ProblemError& error) { throw ProblemError(source + ": " + error.what()); }
     return settings;
 }
 

@@ -17,6 +17,10 @@ namespace percuss::problem {
 /// named) and a key that is given twice without being repeatable.
 std::vector<Setting> read_settings(const std::filesystem::path& file, std::span<const Section> sections);
 
+/// The same from text; `source` names it in messages.
+std::vector<Setting> parse_settings(const std::string& text, const std::string& source,
+                                    std::span<const Section> sections);
+
 /// Splits command-line arguments (without the program's name and the verb). Throws ProblemError for unknown options
 /// (the nearest known one is named), missing values and options given twice without being repeatable.
 CommandLine parse_command_line(std::span<const std::string> arguments, std::span<const RunOption> run_options,

@@ -51,6 +51,7 @@ private:
         setting.text = echo.text;
         setting.exact = echo.exact;
         setting.repeatable = row.repeatable();
+        setting.of_run = row.of_run;
         const Setting* given = given_.find(row.name, row.repeatable() ? entry : 0);
         setting.origin = given == nullptr ? Origin::fallback : given->from_option ? Origin::option : Origin::file;
         setting.trouble = trouble_of(row);
@@ -104,7 +105,7 @@ std::string problem_hash(const ProblemFile& problem) {
     Fnv1a hash;
     for (const ResolvedSetting& setting : problem.settings) {
         const bool is_number = !std::isnan(setting.value);
-        if (setting.exact.empty()) {
+        if (setting.exact.empty() && !setting.of_run) {
             hash.add(setting.name + "=" + (is_number ? model::exact_text(setting.value) : setting.text) + "\n");
         }
     }
@@ -112,6 +113,29 @@ std::string problem_hash(const ProblemFile& problem) {
         if (!setting.exact.empty()) { hash.add(setting.exact + "\n"); }
     }
     return hash.text();
+}
+
+namespace {
+
+/// As exact_text, but counts stay whole numbers: readers of counts take no "1e+05".
+std::string number_in_file(double value) {
+    constexpr double exact_integers = 1e15;
+    const bool is_count = value == std::floor(value) && std::abs(value) < exact_integers;
+    return is_count ? std::to_string(static_cast<long long>(value)) : model::exact_text(value);
+}
+
+}  // namespace
+
+std::string problem_text(const ProblemFile& problem, const std::function<bool(const ResolvedSetting&)>& told) {
+    std::string text;
+    for (const ResolvedSetting& setting : problem.settings) {
+        if (!told(setting)) { continue; }
+        const std::string value = !setting.exact.empty()    ? setting.exact
+                                : std::isnan(setting.value) ? setting.text
+                                                            : number_in_file(setting.value);
+        text += setting.name + " = " + value + "\n";
+    }
+    return text;
 }
 
 std::string_view to_string(Origin origin) {

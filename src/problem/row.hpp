@@ -46,6 +46,8 @@ struct Row {
     /// What an entry of a repeatable key is about ("amplitude <="): an option replaces the entry of the file about the
     /// same. Absent: the key may be given once.
     std::function<std::string(std::string_view value)> subject = {};
+    /// Says how far a run goes (a number of samples), not what the problem is: left out of the hash.
+    bool of_run = false;
 
     [[nodiscard]] bool repeatable() const { return static_cast<bool>(subject); }
     [[nodiscard]] std::string_view section() const { return std::string_view(name).substr(0, name.find('.')); }

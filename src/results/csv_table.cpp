@@ -12,7 +12,7 @@ namespace percuss::results {
 namespace {
 
 std::string quoted(const std::string& cell) {
-    if (cell.find_first_of(",\"\n") == std::string::npos) { return cell; }
+    if (cell.find_first_of(",\"\n\r") == std::string::npos) { return cell; }
     std::string text = "\"";
     for (const char c : cell) { text += c == '"' ? "\"\"" : std::string(1, c); }
     return text + "\"";
@@ -35,7 +35,11 @@ CsvTable::CsvTable(std::filesystem::path file)
 CsvTable::~CsvTable() {
     stream_.close();
     std::error_code error;
-    if (stream_) { std::filesystem::rename(partial_, file_, error); }
+    if (is_discarded_) {
+        std::filesystem::remove(partial_, error);
+    } else if (stream_) {
+        std::filesystem::rename(partial_, file_, error);
+    }
 }
 
 void CsvTable::header(std::span<const Column> columns) {
@@ -53,6 +57,14 @@ void CsvTable::row(std::span<const double> values) {
     }
     end_line();
 }
+
+void CsvTable::row(std::span<const std::string> cells) {
+    if (cells.size() != width_) { throw std::logic_error("csv: a row must be as wide as the header"); }
+    for (std::size_t i = 0; i < width_; ++i) { stream_ << (i == 0 ? "" : ",") << quoted(cells[i]); }
+    end_line();
+}
+
+void CsvTable::discard() { is_discarded_ = true; }
 
 void CsvTable::end_line() {
     stream_ << '\n';

@@ -26,6 +26,11 @@ public:
 
     void header(std::span<const Column> columns) override;
     void row(std::span<const double> values) override;
+    /// A row with texts in it; numbers as cell() makes them.
+    void row(std::span<const std::string> cells);
+
+    /// Nothing of the table is to be kept.
+    void discard();
 
 private:
     void end_line();
@@ -34,6 +39,7 @@ private:
     std::filesystem::path partial_;
     std::ofstream stream_;
     std::size_t width_ = 0;
+    bool is_discarded_ = false;
 };
 
 /// A number as a cell that reads back exactly; empty for NaN.

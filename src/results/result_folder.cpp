@@ -15,19 +15,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* manifest_name = "manifest.json";
+const std::string manifest_name = "manifest.json";
 
 /// A plain file name: what a manifest lists is deleted, so nothing that could point elsewhere.
 bool is_plain_name(const std::string& name) {
     return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos;
 }
 
-/// Whether a folder holds nothing but perhaps the lock of a run.
+/// Whether a folder holds nothing but perhaps the lock of a run and a manifest that it was killed over.
 bool holds_nothing(const fs::path& folder) {
     std::error_code error;
     const fs::directory_iterator entries(folder, error);
-    return std::all_of(begin(entries), end(entries),
-                       [](const auto& entry) { return entry.path().filename() == FolderLock::file_name; });
+    return std::all_of(begin(entries), end(entries), [](const auto& entry) {
+        const std::string name = entry.path().filename().string();
+        return name == FolderLock::file_name || name == manifest_name + std::string(partial_ending);
+    });
 }
 
 problem::ProblemError in_use(const fs::path& folder) {
@@ -37,9 +39,10 @@ problem::ProblemError in_use(const fs::path& folder) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(fs::path path, std::string verb, std::string problem_name, std::string hash, bool force)
+ResultFolder::ResultFolder(fs::path path, std::string verb, std::string problem_name, std::string hash,
+                           EarlierRun earlier)
     : path_(std::move(path)),
-      force_(force) {
+      earlier_(earlier) {
     manifest_.verb = std::move(verb);
     manifest_.problem = std::move(problem_name);
     manifest_.hash = std::move(hash);
@@ -49,7 +52,7 @@ ResultFolder::ResultFolder(fs::path path, std::string verb, std::string problem_
 }
 
 ResultFolder::~ResultFolder() {
-    if (started_ && !finished_) {
+    if (started_ && !finished_ && !keeps_) {
         remove_files(manifest_.files);
         remove_files({manifest_name});
     }
@@ -74,12 +77,19 @@ void ResultFolder::look() {
         throw problem::ProblemError(name + " holds the results of " + old->verb + " on " + old->problem +
                                     " and is left alone: give another one with --out");
     }
-    if (old->hash != manifest_.hash && !force_) {
+    if (earlier_ == EarlierRun::resume) {
+        resumes_ = true;
+        return;
+    }
+    const bool force = earlier_ == EarlierRun::replace;
+    if (old->hash != manifest_.hash && !force) {
         throw problem::ProblemError(name + " holds the results of another problem (" + old->problem + ", hash " +
                                     old->hash + "): give --force to replace them, or another folder with --out");
     }
-    if (old->state != RunState::finished && !force_) {
-        throw problem::ProblemError(name + " holds the results of an unfinished run: give --force to replace them");
+    if (old->state != RunState::finished && !force) {
+        const bool has_journal = fs::exists(path_ / journal_name, error);
+        throw problem::ProblemError(name + " holds the results of an unfinished run: give " +
+                                    (has_journal ? "--resume to go on with it, or " : "") + "--force to replace them");
     }
     old_files_ = old->files;
     old_files_.emplace_back(manifest_name);
@@ -94,10 +104,16 @@ void ResultFolder::create() {
     if (error) { throw problem::ProblemError(path_.string() + " cannot be created: " + error.message()); }
 }
 
-void ResultFolder::start(std::vector<std::string> files, const problem::ProblemFile& problem, const RunRecord& record) {
+void ResultFolder::hold() {
     create();
     if (!lock_.take(path_)) { throw in_use(path_); }
+    holds_ = true;
     look();  // another run may have come and gone since the constructor looked
+}
+
+void ResultFolder::start(std::vector<std::string> files, const problem::ProblemFile& problem, const RunRecord& record) {
+    if (!holds_) { hold(); }
+    keeps_ = keeps_ || resumes_;
     remove_files(old_files_);
     started_ = true;
     manifest_.files = std::move(files);

@@ -26,7 +26,7 @@ bool changes_problem(const RunSettings& settings, const Verb& verb, const std::s
 
 /// results/PROBLEM-VERB unless told otherwise, with digits of the hash where options changed the problem: so the
 /// results of the file alone stay.
-std::filesystem::path folder_path(const RunSettings& settings, const Verb& verb, const problem::ProblemFile& problem) {
+std::filesystem::path whole_path(const RunSettings& settings, const Verb& verb, const problem::ProblemFile& problem) {
     if (settings.out) { return *settings.out; }
     const std::string hash = problem::problem_hash(problem);
     std::string name = problem.name + "-" + std::string(verb.name);
@@ -34,12 +34,51 @@ std::filesystem::path folder_path(const RunSettings& settings, const Verb& verb,
     return std::filesystem::path("results") / name;
 }
 
+std::filesystem::path folder_path(const RunSettings& settings, const Verb& verb, const problem::ProblemFile& problem) {
+    const std::filesystem::path whole = whole_path(settings, verb, problem);
+    return settings.shard.is_whole() || whole.empty() ? whole : shard_folder(whole, settings.shard);
+}
+
+results::EarlierRun earlier_run(const RunSettings& settings) {
+    using problem::ProblemError;
+    if (settings.resume && settings.force) {
+        throw ProblemError("--resume goes on with a run and --force replaces it: give one of them");
+    }
+    if (settings.resume && settings.out == no_folder) {
+        throw ProblemError("--resume needs a results folder: --out is none");
+    }
+    return settings.resume ? results::EarlierRun::resume
+         : settings.force  ? results::EarlierRun::replace
+                           : results::EarlierRun::protect;
+}
+
+problem::ProblemFile problem_of(const Verb& verb, RunSettings& settings) {
+    if (verb.problem != nullptr) { return verb.problem(settings); }
+    return verb.inspects ? problem::inspect_problem(settings.file, settings.keys, sections())
+                         : problem::read_problem(settings.file, settings.keys, sections(), verb.frequency);
+}
+
+constexpr std::string_view shard_mark = "-shard-";
+
 }  // namespace
+
+std::filesystem::path shard_folder(const std::filesystem::path& whole, const results::Shard& shard) {
+    std::filesystem::path name = whole.has_filename() ? whole : whole.parent_path();
+    name += std::string(shard_mark) + std::to_string(shard.index) + "-of-" + std::to_string(shard.count);
+    return name;
+}
+
+std::optional<std::filesystem::path> whole_folder(const std::filesystem::path& shard) {
+    const std::filesystem::path folder = shard.has_filename() ? shard : shard.parent_path();
+    const std::string name = folder.filename().string();
+    const auto mark = name.rfind(shard_mark);
+    if (mark == std::string::npos || mark == 0) { return std::nullopt; }
+    return folder.parent_path() / name.substr(0, mark);
+}
 
 Session::Session(const Verb& verb, RunSettings settings)
     : settings_(std::move(settings)),
-      problem_(verb.inspects ? problem::inspect_problem(settings_.file, settings_.keys, sections())
-                             : problem::read_problem(settings_.file, settings_.keys, sections(), verb.frequency)) {
+      problem_(problem_of(verb, settings_)) {
     design::Sampling& sampling = problem_.design.sampling;
     sampling.seed = settings_.seed.value_or(sampling.seed);
     sampling.jobs = settings_.jobs.value_or(sampling.jobs);
@@ -47,10 +86,11 @@ Session::Session(const Verb& verb, RunSettings settings)
     record_.instruction_set = kernels::instruction_set_in_use(problem_.design.solver.instruction_set);
     record_.integrator = problem_.troubles.empty() ? design::integrator_in_use(problem_.design) : "";
     record_.started = results::time_stamp();
+    const results::EarlierRun earlier = earlier_run(settings_);
     if (!verb.inspects && settings_.out != no_folder) {
-        folder_ =
-            std::make_unique<results::ResultFolder>(folder_path(settings_, verb, problem_), std::string(verb.name),
-                                                    problem_.name, problem::problem_hash(problem_), settings_.force);
+        const std::string writes_as(verb.writes_as.empty() ? verb.name : verb.writes_as);
+        folder_ = std::make_unique<results::ResultFolder>(folder_path(settings_, verb, problem_), writes_as,
+                                                          problem_.name, problem::problem_hash(problem_), earlier);
     }
 }
 
@@ -81,7 +121,7 @@ std::string Session::conclude(const Outcome& outcome) {
     folder_->write("report.html", results::report_page(outcome.presentation, problem_, record_.instruction_set));
     record_.finished = results::time_stamp();
     record_.ending = to_string(outcome.ending);
-    const bool cut_short = outcome.ending == Ending::interrupted;
+    const bool cut_short = outcome.ending == Ending::interrupted || outcome.resumable;
     folder_->finish(cut_short ? results::RunState::interrupted : results::RunState::finished, problem_, record_);
     return folder_->path().string();
 }

@@ -5,6 +5,7 @@
 #include "problem/problem_file.hpp"
 #include "results/presentation.hpp"
 #include "results/result_folder.hpp"
+#include "results/shard.hpp"
 #include "verbs/study.hpp"
 
 #include <filesystem>
@@ -26,6 +27,9 @@ struct RunSettings {
     std::optional<std::uint64_t> seed;
     bool force = false;
     bool gradients = false;
+    bool resume = false;
+    results::Shard shard;
+    std::vector<std::filesystem::path> folders;  ///< for verbs that read results folders instead of a problem
     Observer observer;
     numerics::CancelRequest cancelled;
     /// Whether it was a signal that cancelled, rather than the time limit.
@@ -39,9 +43,15 @@ struct Outcome {
     std::string reason;  ///< one sentence unless verified
     std::string document;
     results::Presentation presentation;
+    bool resumable = false;  ///< a part of the results, to be gone on with
 };
 
 struct Verb;
+
+/// The results folder of a shard of a run whose own would be `whole`.
+std::filesystem::path shard_folder(const std::filesystem::path& whole, const results::Shard& shard);
+/// The folder that `shard` is a shard of, by its name; nothing for other names.
+std::optional<std::filesystem::path> whole_folder(const std::filesystem::path& shard);
 
 /// With --out none all writing is skipped.
 class Session {
@@ -56,6 +66,11 @@ public:
         return problem_.get<Options>();
     }
     [[nodiscard]] bool gradients() const { return settings_.gradients; }
+    [[nodiscard]] const results::Shard& shard() const { return settings_.shard; }
+    [[nodiscard]] const std::vector<std::filesystem::path>& folders() const { return settings_.folders; }
+    [[nodiscard]] const std::string& instruction_set() const { return record_.instruction_set; }
+    /// Whether it was a signal that cancelled.
+    [[nodiscard]] bool interrupted() const { return settings_.interrupted && settings_.interrupted(); }
     [[nodiscard]] const Observer& observer() const { return settings_.observer; }
     [[nodiscard]] const numerics::CancelRequest& cancelled() const { return settings_.cancelled; }
 
@@ -64,6 +79,8 @@ public:
 
     /// Creates the results folder, for these files besides result.json and report.html.
     void start(std::vector<std::string> files);
+    /// The results folder, null when nothing is written; for verbs that keep a journal in it.
+    [[nodiscard]] results::ResultFolder* folder() { return folder_.get(); }
     void write(const std::string& name, const std::string& content) const;
     /// A table in the results folder; null when nothing is written.
     [[nodiscard]] std::unique_ptr<results::RowSink> table(const std::string& name) const;

@@ -7,7 +7,9 @@
 #include "verbs/branch/verb.hpp"
 #include "verbs/check/verb.hpp"
 #include "verbs/evaluate/verb.hpp"
+#include "verbs/explore/verb.hpp"
 #include "verbs/locus/verb.hpp"
+#include "verbs/merge/verb.hpp"
 #include "verbs/optimise/verb.hpp"
 #include "verbs/orbit/verb.hpp"
 #include "verbs/simulate/verb.hpp"
@@ -37,7 +39,8 @@ const std::vector<Verb>& table() {
         locus_verb(),
         attractors_verb(),
         evaluate_verb(),
-        later("explore", "a table over the design space"),
+        explore_verb(),
+        merge_verb(),
         optimise_verb(),
         later("pareto", "the front of two or three objectives"),
         later("benchmark", "compare optimisers over problems and seeds"),
@@ -77,8 +80,15 @@ std::span<const problem::Section> sections() {
         branch_section(),
         locus_section(),
         attractors_section(),
+        explore_section(),
     };
     return all;
+}
+
+VerbOption gradients_option() {
+    VerbOption option{"gradients", "", "also the derivatives of what was found", ""};
+    option.apply = [](const problem::Setting&, RunSettings& settings) { settings.gradients = true; };
+    return option;
 }
 
 bool reads(const Verb& verb, const problem::Row& row) {
@@ -105,6 +115,10 @@ StudyProblem study_problem(const problem::ProblemFile& problem) {
 problem::ProblemFile read_problem(const std::filesystem::path& file, std::span<const problem::Setting> options,
                                   problem::FrequencyUse use) {
     return problem::read_problem(file, options, sections(), use);
+}
+
+problem::ProblemFile parse_problem(const std::string& name, const std::string& text) {
+    return problem::parse_problem(name, text, sections());
 }
 
 problem::ProblemFile inspect_problem(const std::filesystem::path& file, std::span<const problem::Setting> options) {

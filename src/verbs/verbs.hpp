@@ -19,7 +19,12 @@ struct VerbOption {
     std::string_view meaning;
     std::string_view key;          ///< that it stands for; empty: none
     std::string_view key_value{};  ///< given to the key by a flag
+    /// What one that stands for no key does. Throws problem::ProblemError.
+    void (*apply)(const problem::Setting& option, RunSettings& settings) = nullptr;
 };
+
+/// --gradients, for verbs that have derivatives to tell.
+VerbOption gradients_option();
 
 struct Verb {
     std::string_view name;
@@ -29,7 +34,11 @@ struct Verb {
     std::vector<std::string_view> sections;
     Outcome (*run)(Session&) = nullptr;  ///< null: not in this version
     problem::FrequencyUse frequency = problem::FrequencyUse::operates;
-    bool inspects = false;  ///< reads problems with troubles as well, and writes no folder
+    /// For verbs that read results folders: how the command line calls them, and the problem that they are about.
+    std::string_view folders{};
+    problem::ProblemFile (*problem)(RunSettings&) = nullptr;
+    std::string_view writes_as{};  ///< the verb whose results folder it writes; empty: its own
+    bool inspects = false;         ///< reads problems with troubles as well, and writes no folder
 };
 
 /// Every verb, in the order of a typical session.
@@ -48,9 +57,10 @@ bool reads(const Verb& verb, const problem::Row& row);
 /// The problem as the runs of verbs take it.
 StudyProblem study_problem(const problem::ProblemFile& problem);
 
-/// problem::read_problem and problem::inspect_problem with the keys of all verbs.
+/// problem::read_problem, parse_problem and inspect_problem with the keys of all verbs.
 problem::ProblemFile read_problem(const std::filesystem::path& file, std::span<const problem::Setting> options,
                                   problem::FrequencyUse use = problem::FrequencyUse::operates);
+problem::ProblemFile parse_problem(const std::string& name, const std::string& text);
 problem::ProblemFile inspect_problem(const std::filesystem::path& file, std::span<const problem::Setting> options);
 
 }  // namespace percuss::verbs

@@ -59,7 +59,7 @@ Verb branch_verb() {
     Verb verb;
     verb.name = "branch";
     verb.summary = "continuation in the drive frequency or a design variable: hysteresis map, all boundaries";
-    verb.options = {{"gradients", "", "also the derivatives of what was found", ""},
+    verb.options = {gradients_option(),
                     {"period", "N", "short for --branch.period", "branch.period"},
                     {"from", "VALUE", "short for --branch.from", "branch.from"},
                     {"to", "VALUE", "short for --branch.to", "branch.to"},

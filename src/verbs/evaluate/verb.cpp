@@ -41,7 +41,7 @@ Verb evaluate_verb() {
     Verb verb;
     verb.name = "evaluate";
     verb.summary = "one design: operating point, quantities, uniqueness";
-    verb.options = {{"gradients", "", "also the derivatives of what was found", ""}};
+    verb.options = {gradients_option()};
     verb.sections = {"design", "uniqueness"};
     verb.run = run;
     return verb;

@@ -58,8 +58,7 @@ Verb orbit_verb() {
     Verb verb;
     verb.name = "orbit";
     verb.summary = "the periodic orbit at one frequency: state, multipliers, quantities";
-    verb.options = {{"gradients", "", "also the derivatives of what was found", ""},
-                    {"period", "N", "short for --orbit.period", "orbit.period"}};
+    verb.options = {gradients_option(), {"period", "N", "short for --orbit.period", "orbit.period"}};
     verb.sections = {"orbit", "design"};
     verb.run = run;
     return verb;
