@@ -122,3 +122,12 @@ TEST_CASE("a bias of either sign is felt by gradients") {
         (8.0 * (moved(0.1 + h) - moved(0.1 - h)) - (moved(0.1 + 2.0 * h) - moved(0.1 - 2.0 * h))) / (12.0 * h);
     CHECK(exact.at("gradients").at("peak_force").at("spring-mass.bias").get<double>() == relative(difference, 1e-6));
 }
+
+TEST_CASE("a search that comes upon designs pressed at rest goes on") {
+    const std::string file = spring_with_stop(0.0, 0.5, "edge") +
+                             "[design]\nvariable = stop.gap in -0.3 .. 0.9\nmaximise = peak_force\n"
+                             "limit = amplitude <= 0.6\n[optimiser]\nsamples = 24\nmethod = slsqp\n";
+    const Json document = answer("optimise", file);
+    CHECK(document.at("status") == "optimal");
+    CHECK(document.at("design").at("stop.gap").get<double>() > 0.0);
+}

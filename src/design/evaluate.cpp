@@ -110,7 +110,16 @@ private:
         options.margin = problem_.margin;
         options.find_neighbours = must_be_alone();
         options.directions = directions;
-        Operation operation = operate({actuator_, scaled_, with(integrators_.own), with(integrators_.scout)}, options);
+        const flow::System system = with(integrators_.own);
+        if (system.integrator->info().has_stop && !model::has_frequency(actuator_)) {
+            // A search over gap or bias comes upon designs that rest against the stop: no reason to end it.
+            if (const auto why = edge_ruled_out(system)) {
+                result_.status = EvaluationStatus::failed;
+                result_.reason = *why;
+                return {};
+            }
+        }
+        Operation operation = operate({actuator_, scaled_, system, with(integrators_.scout)}, options);
         result_.operating_point = operation.point;
         if (operation.edge) { result_.gradients.edge_omega = operation.edge->d_omega; }
         if (!operation.found()) {

@@ -67,15 +67,7 @@ void find_neighbours(const DrivenDesign& design, double margin, boundary::FreeBr
 }
 
 Operation operate_below_edge(const DrivenDesign& design, const OperationOptions& options) {
-    if (!design.system.integrator->info().has_stop) {
-        throw std::invalid_argument("drive.frequency = edge needs a stop: stop.law is none");
-    }
-    const flow::System& system = design.system;
-    if (system.integrator->rest_state(system.parameters)[0] > system.stop_position()) {
-        throw std::invalid_argument(
-            "drive.frequency = edge: the stop presses on the mass at rest, so that no free motion grazes it; give "
-            "drive.frequency a number");
-    }
+    if (const auto why = edge_ruled_out(design.system)) { throw std::invalid_argument(*why); }
     Operation operation;
     boundary::FreeBranch branch(design.scout);
     const boundary::Edge edge = boundary::find_edge(branch, design.system, {}, options.directions);
@@ -116,6 +108,15 @@ Reached reach_below_edge(const Operation& operation) {
 }
 
 }  // namespace
+
+std::optional<std::string> edge_ruled_out(const flow::System& system) {
+    if (!system.integrator->info().has_stop) { return "drive.frequency = edge needs a stop: stop.law is none"; }
+    if (system.integrator->rest_state(system.parameters)[0] > system.stop_position()) {
+        return "drive.frequency = edge: the stop presses on the mass at rest, so that no free motion grazes it; give "
+               "drive.frequency a number";
+    }
+    return std::nullopt;
+}
 
 Operation operate(const DrivenDesign& design, const OperationOptions& options) {
     const auto given = given_omega(design.actuator, design.scaled, *design.system.integrator);

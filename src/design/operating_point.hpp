@@ -52,6 +52,10 @@ struct Operation {
     [[nodiscard]] bool found() const { return status == OperationStatus::found; }
 };
 
+/// Why this design has no edge to be driven at, whatever its free motion does: there is no stop, or it presses at rest.
+/// One sentence, or nothing. For a design that a user gave this is misuse; a search may come upon such a one.
+std::optional<std::string> edge_ruled_out(const flow::System& system);
+
 /// The operating point of a design. A frequency in the actuator's specification is taken as it is; without one the
 /// design is driven the margin below its edge, the first frequency from above at which the free motion can no longer
 /// stay clear of the stop (boundary/edge.hpp). Throws std::invalid_argument for an edge without a stop.

@@ -1,8 +1,10 @@
 #include "verbs/evaluate/evaluate.hpp"
 
 #include "design/evaluate.hpp"
+#include "design/operating_point.hpp"
 
 #include <chrono>
+#include <stdexcept>
 
 namespace percuss::verbs {
 namespace {
@@ -54,6 +56,10 @@ EvaluateResult run_evaluate(const StudyProblem& problem, bool gradients, const n
     const auto start = std::chrono::steady_clock::now();
     EvaluateResult result;
     const design::Evaluator evaluator(design_problem(problem));
+    const model::Specification& actuator = problem.design.actuator;
+    if (!model::has_frequency(actuator)) {
+        if (const auto why = design::edge_ruled_out(evaluator.system(actuator))) { throw std::invalid_argument(*why); }
+    }
     design::Demand demand;
     demand.quantities = quantities_to_report(problem.design);
     if (gradients) { demand.gradients = gradient_keys(problem.design); }
