@@ -162,8 +162,9 @@ problem::Section explore_section() {
                          "columns of designs.csv besides the row's number and the variables: quantities, keys, "
                          "edge_kind, status, cause",
                          read_columns, columns_echo),
-        choice<Options, bool>("explore.sensitivities", &Options::sensitivities, {{"on", true}, {"off", false}},
-                              "sensitivities of the quantities from exact gradients, which are computed for them"),
+        choice<Options, bool>(
+            "explore.sensitivities", &Options::sensitivities, {{"on", true}, {"off", false}},
+            "sensitivities of the quantities, from exact gradients that make an evaluation a few percent slower"),
     });
 }
 
@@ -176,7 +177,9 @@ Verb explore_verb() {
                       "where there is none",
                       ""};
     resume.apply = [](const Setting&, RunSettings& settings) { settings.resume = true; };
-    VerbOption shard{"shard", "i/N", "compute part i (from 0) of N alone; auto: as a Slurm array, mpirun or srun say",
+    VerbOption shard{"shard", "i/N",
+                     "compute part i (from 0) of N alone, in a folder with -shard-i-of-N behind its name; auto: as a "
+                     "Slurm array, mpirun or srun say",
                      ""};
     shard.apply = [](const Setting& s, RunSettings& settings) {
         const auto environment = [](const char* name) -> std::optional<std::string> {

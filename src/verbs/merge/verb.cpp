@@ -109,7 +109,9 @@ Outcome run(Session& session) {
 Verb merge_verb() {
     Verb verb;
     verb.name = "merge";
-    verb.summary = "join the shards of an exploration into the table one process would have written";
+    verb.summary =
+        "join the shards of an exploration into the table one process would have written, in the folder of their "
+        "name without -shard-i-of-N or that of --out";
     verb.folders = "SHARD_DIR...";
     verb.problem = problem_of_shards;
     verb.writes_as = explore_kind;
