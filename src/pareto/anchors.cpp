@@ -9,8 +9,8 @@ namespace percuss::pareto {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double held_within = 1e-8;     // see the header
-constexpr double least_gain = 1e-3;      // see the header
+constexpr double held_within = 1e-9;     // see the header
+constexpr double least_gain = 2e-4;      // see the header
 constexpr double smallest_range = 1e-9;  // of an objective, relative to its magnitude: below this it does not vary
 
 /// The first scale: what the objectives range over among points that fill the box.

@@ -37,9 +37,6 @@ constexpr double below_end_of_gap = 0.25;
 constexpr int most_searches = 40;
 /// A point of the archive must beat a point of the front by this much: more than corrections can be off.
 constexpr double clearly = 1e-6;
-/// Points of the archive within this distance of an anchor teach the first models their curvature.
-constexpr double archive_radius = 0.25;
-constexpr int archive_points = 40;
 
 class Tracer {
 public:
@@ -67,8 +64,9 @@ public:
 
 private:
     [[nodiscard]] bool may_add() const { return static_cast<int>(nodes_.size()) < options_.points; }
-    [[nodiscard]] Node node_at(const Vector& u, Origin origin);
-    [[nodiscard]] std::optional<Node> solve(const Node& from, const Target& target, Origin origin);
+    [[nodiscard]] std::optional<Node> solve(const Node& from, const Target& target, Origin origin) {
+        return solve_from(problem_, from, target, origin, corrector_);
+    }
     [[nodiscard]] std::optional<Node> step_ahead(const Node& from, int direction, double length);
     [[nodiscard]] bool arrived(const Node& from, int direction, double length) const;
     void trace(Node from, int direction);
@@ -77,6 +75,7 @@ private:
     void search_in(std::size_t gap);
     [[nodiscard]] std::optional<Node> best_below(double y2, const std::vector<Vector>& warm_starts);
     [[nodiscard]] std::vector<Vector> archived_in(std::size_t gap, double y2) const;
+    void mark_jump_before(const Vector& u);
     [[nodiscard]] int beaten_node(const Vector& y) const;
     [[nodiscard]] bool feasible(const VectorEvaluation& e) const {
         return e.ok && optimise::infeasibility_of(e.constraints) <= options_.search.feasibility_tolerance;
@@ -101,34 +100,12 @@ bool Tracer::find_anchors() {
     front_.message = anchors.message;
     if (!anchors.found) return false;
     for (const Anchor& anchor : anchors.anchors) {
-        Node node = node_at(anchor.u, Origin::anchor);
+        Node node = node_at(problem_, anchor.u, Origin::anchor);
         node.evaluations = anchor.evaluations;
         nodes_.insert(std::move(node));
     }
     single_ = anchors.single || nodes_.size() < 2;
     return !single_;
-}
-
-/// A node at an evaluated point, with models that know what the archive can tell.
-Node Tracer::node_at(const Vector& u, Origin origin) {
-    Node node{u, problem_.evaluate(u, true), {}, {problem_.variables(), 2 + problem_.constraints()}, origin};
-    node.certificate = certify_front(node.here, u);
-    learn_from_archive(node.models, problem_, u, archive_radius, archive_points);
-    if (node.here.ok) node.models.move_to(u, node.here);
-    else node.here = problem_.evaluate(u, false);  // only the derivatives are missing
-    return node;
-}
-
-std::optional<Node> Tracer::solve(const Node& from, const Target& target, Origin origin) {
-    if (!from.models.has_base()) return std::nullopt;
-    Node node{{}, {}, {}, from.models, origin};
-    const Correction correction = correct(problem_, node.models, target, from.certificate, corrector_);
-    if (!correction.converged) return std::nullopt;
-    node.u = correction.u;
-    node.here = correction.here;
-    node.certificate = correction.certificate;
-    node.evaluations = correction.evaluations;
-    return node;
 }
 
 /// Unit tangent of the front at a node, towards larger y_1 (direction 1) or smaller.
@@ -207,9 +184,9 @@ void Tracer::locate_changes() {
             return solve(from, target, Origin::change);
         };
         const std::optional<LocatedChange> change = locate_change(nodes_[i], nodes_[i + 1], corrected);
-        if (!change) continue;
+        if (!change || nodes_.insert(change->node) < 0) continue;
         changes_.push_back(*change);
-        nodes_.insert(change->node);  // the gap beyond it, next in turn, may hold a further change
+        ++i;  // what is left of this one's bracket lies beyond it
     }
 }
 
@@ -282,7 +259,7 @@ std::optional<Node> Tracer::best_below(double y2, const std::vector<Vector>& war
     const optimise::MultiStartResult found = search(problem_, 0, limits, warm_starts, options_.search);
     ++front_.searches;
     std::optional<Node> node;
-    if (found.best.feasible) node = node_at(found.best.x, Origin::searched);
+    if (found.best.feasible) node = node_at(problem_, found.best.x, Origin::searched);
     if (node && !node->certificate.certified(options_.certificate_tolerance, corrector_.feasibility_tolerance)) {
         // Of the epsilon-constraint problem the optimum may still be rough: correct it where it is.
         std::optional<Node> better = solve(*node, {node->here.objectives, Vector::Ones(2)}, Origin::searched);
@@ -317,9 +294,18 @@ void Tracer::search_in(std::size_t gap) {
         if (place > 0) {
             Node& left = nodes_[static_cast<std::size_t>(place) - 1];
             left.explored = std::max(left.explored, std::min(y2, left.y2()));
-            left.jump = found->y2() < y2 - clearly;
         }
         trace_both_ways(*found);
+        mark_jump_before(found->u);
+    }
+}
+
+/// What tracing back from a point found by search does not reach is a jump.
+void Tracer::mark_jump_before(const Vector& u) {
+    for (std::size_t i = 1; i < nodes_.size(); ++i) {
+        if (nodes_[i].u != u) continue;
+        nodes_[i - 1].jump =
+            (nodes_[i].here.objectives - nodes_[i - 1].here.objectives).norm() > most_progress * spacing_;
     }
 }
 
@@ -437,8 +423,8 @@ Front trace_front(MultiObjective& problem, const FrontOptions& options) {
     try {
         if (tracer.find_anchors()) {
             tracer.trace_from_anchors();
-            tracer.locate_changes();
             do {
+                tracer.locate_changes();
                 while (tracer.wants_refinement()) tracer.refine_loosest_gap();
             } while (tracer.replace_beaten_piece());
         }

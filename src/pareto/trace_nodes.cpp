@@ -30,7 +30,6 @@ int NodeList::insert(Node node) {
         // What was found empty between the left and right neighbours stays so, unless this node disproves it.
         if (!contradicted && place != nodes_.end() && left.explored <= node.y2()) {
             node.explored = std::max(node.explored, left.explored);
-            node.jump = left.jump;
         }
         left.explored = node.y2();
         left.local_failed = left.jump = left.given_up = false;

@@ -2,30 +2,11 @@
 /// \file
 /// The points of a front of two objectives while it is being traced, and the gaps between them.
 
-#include "pareto/corrector.hpp"
+#include "pareto/node.hpp"
 
 #include <vector>
 
 namespace percuss::pareto {
-
-/// A point, with the models that were in use there.
-struct Node {
-    Vector u;
-    VectorEvaluation here;  ///< scaled
-    FrontCertificate certificate;
-    QuadraticModels models;  ///< their base is u
-    Origin origin = Origin::searched;
-    int evaluations = 0;
-
-    /// The gap to the right: no point of the front left of the right neighbour has y_2 <= explored.
-    double explored = 0.0;
-    bool local_failed = false;  ///< the corrector could not divide the gap
-    bool jump = false;          ///< a search found nothing in it
-    bool given_up = false;      ///< nothing could divide it
-
-    [[nodiscard]] double y1() const { return here.objectives[0]; }
-    [[nodiscard]] double y2() const { return here.objectives[1]; }
-};
 
 /// Nodes by rising y_1 and falling y_2.
 class NodeList {
