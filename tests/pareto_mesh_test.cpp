@@ -32,7 +32,8 @@ TEST_CASE("mesh: the octant of the sphere") {
         CHECK(p.objectives.norm() == doctest::Approx(1).epsilon(p.origin == Origin::anchor ? 3e-4 : 1e-6));
         if (p.origin == Origin::anchor) continue;
         evaluations += p.evaluations;
-        // The weights are the normal of the front.
+        // The weights are the normal of the front; at its rim others are too.
+        if (p.objectives.minCoeff() < 1e-3) continue;
         CHECK((p.weights / p.weights.norm() - p.objectives).norm() < 1e-4);
     }
     CHECK(non_dominated(objectives).size() == objectives.size());

@@ -26,8 +26,8 @@ struct Anchors {
 };
 
 /// Anchor j: minimise y_j by multi-start; then, where that leaves a choice, the next objectives in turn with those
-/// before held (lexicographic), so that an anchor is not only weakly optimal. Held to within 1e-8 of the range; the
-/// later solve is taken only if it gains more than 1e-3 of the range of its objective, as a unique optimum too gives
+/// before held (lexicographic), so that an anchor is not only weakly optimal. Held to within 1e-9 of the range; the
+/// later solve is taken only if it gains more than 2e-4 of the range of its objective, as a unique optimum too gives
 /// way a little when its objective may (by about the square root of 1e-9).
 ///
 /// Afterwards the objectives of `problem` are scaled so that the ideal point is 0 and the worst values at the anchors

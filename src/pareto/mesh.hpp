@@ -9,9 +9,9 @@ namespace percuss::pareto {
 /// Points spread over the front of three objectives:
 ///
 ///  1. Anchors (anchors.hpp).
-///  2. The search zone of largest volume (search_zones.hpp) is where the hypervolume is known least. On the ray through
-///     its box the corrector (corrector.hpp) seeks a point of the front from the nearest one known; where that fails, a
-///     global search of an epsilon-constraint problem with limits in the middle of the box.
+///  2. The search zone in which most is open (search_zones.hpp) is where the hypervolume is known least. On the ray
+///     through its box the corrector (corrector.hpp) seeks a point of the front from the nearest one known; where that
+///     fails, a global search of an epsilon-constraint problem with limits in the middle of the box.
 ///  3. What is found divides the zone; a zone in which nothing is found is closed.
 ///
 /// Front::error_bound is that of unknown_front_bounds in the box ideal..nadir, which with three objectives falls as

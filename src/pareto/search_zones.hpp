@@ -10,17 +10,16 @@ namespace percuss::pareto {
 
 using numerics::Vector;
 
-/// All points y < upper that no known point dominates and that are not known to be empty. Objective j of its j-th
-/// defining point is upper_j.
+/// All points y < upper that no known point dominates. Objective j of its j-th defining point is upper_j.
 struct SearchZone {
     Vector upper;
     std::vector<Vector> defining;
-    bool closed = false;
+    double open = 0.0;    ///< at least the volume in which the front may still pass
+    bool closed = false;  ///< given up
 
-    /// lower_j = max of objective j over the other defining points: the box [lower, upper] neither dominates a defining
-    /// point nor is dominated by one.
+    /// The smallest of each objective over the defining points: the front that they enclose is about on the way from
+    /// the upper to this corner.
     [[nodiscard]] Vector lower() const;
-    [[nodiscard]] double volume() const { return (upper - lower()).prod(); }
 };
 
 /// Search zones as local upper bounds, kept up to date point by point (Klamroth, Lacour and Vanderpooten, Eur. J. Oper.
@@ -31,10 +30,15 @@ public:
     explicit SearchZones(int objectives);
 
     void add(const Vector& point);
-    /// The open zone of largest volume; null if none.
+    /// Of the zones that are not closed, the one in which most is open: the volume of the box [0, upper] without the
+    /// boxes [0, p] of the known points, which nothing can reach. Null if none. It can only fall when points are added,
+    /// so old values are bounds, and only the largest need be brought up to date.
     [[nodiscard]] SearchZone* loosest();
 
 private:
+    [[nodiscard]] double open_volume(const Vector& upper) const;
+
+    std::vector<Vector> points_;
     std::vector<SearchZone> zones_;
 };
 
