@@ -138,14 +138,30 @@ Multipliers first_estimate(const FrontCertificate& from, const Target& target) {
 }  // namespace
 
 Correction correct(UnitProblem& problem, QuadraticModels& models, const Target& target, const FrontCertificate& from,
-                   const CorrectorOptions& options) {
+                   const CorrectorOptions& options, const Vector& guess) {
     Correction result;
     const int before = problem.evaluations();
     const auto spent = [&] { return problem.evaluations() - before; };
     Multipliers multipliers = first_estimate(from, target);
     CorrectorOptions current = options;
     int refused = 0;
+    const auto take = [&](const Vector& u, const VectorEvaluation& here) {
+        models.move_to(u, here);
+        result.u = u;
+        result.here = here;
+        result.certificate = certify_front(here, u);
+        result.converged = result.certificate.certified(options.tolerance, options.feasibility_tolerance);
+    };
 
+    if (guess.size() > 0) {
+        const Vector u = guess.cwiseMax(0.0).cwiseMin(1.0);
+        const VectorEvaluation here = problem.evaluate(u, true);
+        if (here.ok) take(u, here);
+    }
+    if (result.converged) {
+        result.evaluations = spent();
+        return result;
+    }
     // A point known from before costs no evaluation, hence the second limit.
     for (int attempt = 0; attempt < 2 * options.evaluations && spent() < options.evaluations; ++attempt) {
         const auto model = ModelProblem(models, target, current).solve(multipliers);
@@ -157,12 +173,8 @@ Correction correct(UnitProblem& problem, QuadraticModels& models, const Target& 
             current.radius = 0.25 * std::min(current.radius, model->step.lpNorm<Eigen::Infinity>());
             continue;
         }
-        models.move_to(u, here);
+        take(u, here);
         multipliers = model->multipliers;
-        result.u = u;
-        result.here = here;
-        result.certificate = certify_front(here, u);
-        result.converged = result.certificate.certified(options.tolerance, options.feasibility_tolerance);
         // A step that the radius cut short may end on the front, but not where it was to go.
         const bool cut = model->step.lpNorm<Eigen::Infinity>() >= 0.999 * current.radius;
         if (result.converged && !cut) break;

@@ -39,8 +39,10 @@ struct Correction {
 /// any evaluation, in which limits and bounds begin and cease to bind), evaluates there, updates the models, and so on,
 /// until the certificate holds. The models' base must be the point to start from; afterwards it is the last point that
 /// could be evaluated. Local: it may fail where the target is far away; nothing is lost then but evaluations.
-/// `from`: certificate at the base, for the first estimate of the multipliers.
+/// `from`: certificate at the base, for the first estimate of the multipliers. `guess`: where the target is expected to
+/// be, evaluated first; empty if there is nothing better than the models.
 [[nodiscard]] Correction correct(UnitProblem& problem, QuadraticModels& models, const Target& target,
-                                 const FrontCertificate& from, const CorrectorOptions& options);
+                                 const FrontCertificate& from, const CorrectorOptions& options,
+                                 const Vector& guess = {});
 
 }  // namespace percuss::pareto

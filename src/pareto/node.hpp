@@ -32,6 +32,11 @@ struct Node {
 
 /// The node on the front that corrects the target from another node (corrector.hpp); nothing where that fails.
 [[nodiscard]] std::optional<Node> solve_from(UnitProblem& problem, const Node& from, const Target& target,
-                                             Origin origin, const CorrectorOptions& options);
+                                             Origin origin, const CorrectorOptions& options, const Vector& guess = {});
+
+/// Where the front, known at some nodes of one piece, passes the line across `direction` through y: the polynomial
+/// through the nodes' u over their place along `direction` (of degree one less than the nodes). Empty for fewer than
+/// three nodes, or where two of them do not bind the same limits and bounds.
+[[nodiscard]] Vector expected_at(const Vector& y, const Vector& direction, const std::vector<const Node*>& nodes);
 
 }  // namespace percuss::pareto

@@ -1,14 +1,12 @@
 #include "pareto/trace.hpp"
 
 #include "optimise/memoised_nlp.hpp"
-#include "optimise/solve.hpp"
 #include "pareto/active_changes.hpp"
 #include "pareto/trace_nodes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -35,6 +33,9 @@ constexpr double below_end_of_gap = 0.25;
 /// Searches cost some hundred evaluations each. A front needs one or two a jump; more mean that its points cannot be
 /// certified (kinks, or the border of what can be evaluated), and then searching on does not end.
 constexpr int most_searches = 40;
+/// A cubic through the last four points tells the next to the fourth power of the spacing; more points would carry
+/// their own errors on.
+constexpr std::size_t nodes_of_guess = 4;
 /// A point of the archive must beat a point of the front by this much: more than corrections can be off.
 constexpr double clearly = 1e-6;
 
@@ -64,12 +65,13 @@ public:
 
 private:
     [[nodiscard]] bool may_add() const { return static_cast<int>(nodes_.size()) < options_.points; }
-    [[nodiscard]] std::optional<Node> solve(const Node& from, const Target& target, Origin origin) {
-        return solve_from(problem_, from, target, origin, corrector_);
+    [[nodiscard]] std::optional<Node> solve(const Node& from, const Target& target, Origin origin,
+                                            const Vector& guess = {}) {
+        return solve_from(problem_, from, target, origin, corrector_, guess);
     }
-    [[nodiscard]] std::optional<Node> step_ahead(const Node& from, int direction, double length);
+    [[nodiscard]] std::optional<Node> step_ahead(const std::vector<Node>& walked, int direction, double length);
     [[nodiscard]] bool arrived(const Node& from, int direction, double length) const;
-    void trace(Node from, int direction);
+    void trace(const Node& start, int direction);
     void trace_both_ways(const Node& from);
     [[nodiscard]] bool divide(std::size_t gap);
     void search_in(std::size_t gap);
@@ -117,11 +119,16 @@ Vector tangent_at(const Node& node, int direction) {
 }
 
 /// The point at `length` on the tangent, corrected along the normal.
-std::optional<Node> Tracer::step_ahead(const Node& from, int direction, double length) {
+std::optional<Node> Tracer::step_ahead(const std::vector<Node>& walked, int direction, double length) {
+    const Node& from = walked.back();
     const Vector tangent = tangent_at(from, direction);
     Vector normal = from.certificate.weights / from.certificate.weights.norm();
     for (double& v : normal) v = v < 1e-6 ? 0.0 : v;  // an end of the front: the other objective is a limit
-    std::optional<Node> node = solve(from, {from.here.objectives + length * tangent, normal}, Origin::traced);
+    const Vector target = from.here.objectives + length * tangent;
+    std::vector<const Node*> last;
+    for (std::size_t k = walked.size(); k-- > 0 && last.size() < nodes_of_guess;) last.push_back(&walked[k]);
+    const Vector guess = expected_at(target, tangent, last);
+    std::optional<Node> node = solve(from, {target, normal}, Origin::traced, guess);
     if (!node) return std::nullopt;
     const Vector moved = node->here.objectives - from.here.objectives;
     const double progress = moved.dot(tangent);
@@ -146,16 +153,17 @@ bool Tracer::arrived(const Node& from, int direction, double length) const {
            (way - distance * tangent_at(from, direction)).norm() <= in_line * distance;
 }
 
-void Tracer::trace(Node from, int direction) {
+void Tracer::trace(const Node& start, int direction) {
+    std::vector<Node> walked = {start};
     double length = spacing_;
     int spent = 0;  // on steps that failed
-    while (may_add() && length > std::ldexp(spacing_, -halvings) * 0.99 && !arrived(from, direction, length)) {
+    while (may_add() && length > std::ldexp(spacing_, -halvings) * 0.99 && !arrived(walked.back(), direction, length)) {
         const int before = problem_.evaluations();
-        std::optional<Node> next = step_ahead(from, direction, length);
+        std::optional<Node> next = step_ahead(walked, direction, length);
         spent += problem_.evaluations() - before;
         if (next) next->evaluations = spent;
         if (next && nodes_.insert(*next) >= 0) {
-            from = std::move(*next);
+            walked.push_back(std::move(*next));
             length = std::min(2.0 * length, spacing_);
             spent = 0;
         } else {
@@ -211,8 +219,11 @@ bool Tracer::divide(std::size_t gap) {
     normal << -chord[1], chord[0];
     const Target middle{0.5 * (left.here.objectives + right.here.objectives), normal / normal.norm()};
     const int before = problem_.evaluations();
+    std::vector<const Node*> around;
+    for (std::size_t i = gap > 0 ? gap - 1 : 0; i < std::min(gap + 3, nodes_.size()); ++i) around.push_back(&nodes_[i]);
+    const Vector guess = expected_at(middle.anchor, chord / chord.norm(), around);
     for (const Node* from : {&left, &right}) {
-        std::optional<Node> node = solve(*from, middle, Origin::bisected);
+        std::optional<Node> node = solve(*from, middle, Origin::bisected, from == &left ? guess : Vector{});
         if (!node) continue;
         const double y1 = node->y1();
         const double y2 = node->y2();
@@ -383,35 +394,6 @@ Front Tracer::result() {
 }
 
 }  // namespace
-
-const char* to_string(Front::Status status) {
-    switch (status) {
-        case Front::Status::not_run: return "not run";
-        case Front::Status::converged: return "converged";
-        case Front::Status::points: return "points";
-        case Front::Status::unresolved: return "unresolved";
-        case Front::Status::single: return "single";
-        case Front::Status::infeasible: return "infeasible";
-        case Front::Status::budget: return "budget";
-    }
-    return "unknown";
-}
-
-void check(const FrontOptions& options) {
-    std::ostringstream message;
-    if (!(options.tolerance > 0 && options.tolerance < 1)) {
-        message << "tolerance = " << options.tolerance << ", must be in (0, 1)";
-    } else if (options.points < 2) {
-        message << "points = " << options.points << ", must be >= 2";
-    } else if (!(options.certificate_tolerance > 0)) {
-        message << "certificate_tolerance = " << options.certificate_tolerance << ", must be > 0";
-    } else if (options.search.candidates < 1) {
-        message << "candidates = " << options.search.candidates << ", must be >= 1";
-    } else {
-        return;
-    }
-    throw std::invalid_argument(message.str());
-}
 
 Front trace_front(MultiObjective& problem, const FrontOptions& options) {
     check(options);

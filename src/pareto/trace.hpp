@@ -74,8 +74,9 @@ struct Front {
 ///  (corrector.hpp):
 ///     the target is a step ahead on the tangent that the weights give, as in pseudo-arclength continuation, with the
 ///     normal as direction (Hillermeier, Nonlinear Multiobjective Optimization, 2001, chapter 6, without second
-///     derivatives). Limits and bounds begin and cease to bind inside the corrector. A step that fails, turns back or
-///     lands on a dominated point is halved three times; then tracing ends there.
+///     derivatives), begun where a cubic through the last four points expects it. Limits and bounds begin and cease to
+///     bind inside the corrector. A step that fails, turns back or lands on a dominated point is halved three times;
+///     then tracing ends there.
 ///  3. The points at which limits and bounds begin and cease to bind, by Illinois' regula falsi on multiplier or slack.
 ///  4. The gap of largest area is divided at the middle of its chord by the corrector, from either end; where that
 ///  fails
