@@ -4,7 +4,8 @@
 /// arrived at the orbit. Shares no code with src/attractor: its own box, its own generator, no traps, no Newton.
 
 #include "flow/flow.hpp"
-#include "model/parameters.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -47,7 +47,7 @@ std::vector<Scene> scenes() {
     const flow::State spread = {0.09, 0.2, 0.02, 0.02};
     return {{"impacting", {}, with(paper_defaults, model::membrane::omega, 1.78), rest, spread},
             {"free", {}, with(paper_defaults, model::membrane::omega, clear_omega), rest, spread},
-            {"soft-impact", {model::ActuatorKind::spring_mass}, soft_impact, {0.0, 0.0}, {1.5, 1.5}}};
+            {"soft-impact", {&model::spring::scene}, soft_impact, {0.0, 0.0}, {1.5, 1.5}}};
 }
 
 /// Points that fill the box evenly: an additive recurrence with the powers of the root of g^5 = g + 1.

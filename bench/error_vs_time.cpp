@@ -54,7 +54,7 @@ std::vector<Scene> scenes() {
          damped,
          period_from({0.380528594717, 0.002989136824, 1.183539778580, 1.186091079761}, 0.0)},
         {"soft-impact",
-         {model::ActuatorKind::spring_mass},
+         {&model::spring::scene},
          soft_impact,
          period_from({-1.150752085546, 0.011476584513, 0.0, 0.0}, 3.30939)},
     };

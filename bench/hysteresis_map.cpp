@@ -8,7 +8,7 @@
 // Actuator", Appl. Syst. Innov. 2022, 5, 122, section 3: 400 frequencies each way, at each of them the motion is
 // followed from the state before until its strobed state changes by less than 1e-6 from one repeat to the next, 500
 // drive cycles at most, and then watched for one repeat. They see stable motions only, one at a time. The map is
-// study::run_branch over the same range: stable and unstable motions, multipliers at every point, all grazing points,
+// verbs::run_branch over the same range: stable and unstable motions, multipliers at every point, all grazing points,
 // folds and flips.
 //
 // The bar applies to the same integrator at the same tolerance, that of the program. The sweeps alone could do with
@@ -20,11 +20,11 @@
 // Machine: any x86-64; the numbers in commit messages and reports are from two shared cores of an AMD EPYC (Zen 4).
 // Times are processor time of one thread, contestants take turns in one process, ratios of minima count.
 
-#include "io/problem_file.hpp"
 #include "orbit/frequency_sweep.hpp"
 #include "scenes.hpp"
-#include "study/branch.hpp"
 #include "timing.hpp"
+#include "verbs/branch/branch.hpp"
+#include "verbs/verbs.hpp"
 
 #include <cstdio>
 #include <limits>
@@ -44,17 +44,17 @@ constexpr double edge_bar = 1e-9;
 constexpr double edge = 1.93541550079;
 
 /// The map as the program makes it, from a motion reached from rest at the upper end of the range.
-branch::Branch hysteresis_map(const study::StudyProblem& problem) {
-    study::BranchStudy study;
+branch::Branch hysteresis_map(const verbs::StudyProblem& problem) {
+    verbs::BranchOptions study;
     study.from = highest;
     study.to = lowest;
-    study::BranchStudyResult result = study::run_branch(problem, study, {}, {});
+    verbs::BranchResult result = verbs::run_branch(problem, study, {}, {});
     return result.branches.empty() ? branch::Branch{} : std::move(result.branches.front());
 }
 
-study::StudyProblem paper_problem() {
-    study::StudyProblem problem =
-        io::read_problem(PERCUSS_BENCH_DATA "/../problems/wu2022-nondimensional.ini", {}).study;
+verbs::StudyProblem paper_problem() {
+    verbs::StudyProblem problem =
+        verbs::study_problem(verbs::read_problem(PERCUSS_BENCH_DATA "/../problems/wu2022-nondimensional.ini", {}));
     problem.design.solver.tolerance = map_tolerance;
     return problem;
 }
@@ -130,7 +130,7 @@ bool complete(const branch::Branch& map) {
 }  // namespace
 
 int main() {
-    const study::StudyProblem problem = paper_problem();
+    const verbs::StudyProblem problem = paper_problem();
     const branch::Branch map = hysteresis_map(problem);
     const std::array<double, 4> sweep_tolerances = {1e-13, 1e-10, 1e-8, 1e-6};
 

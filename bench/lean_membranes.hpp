@@ -2,7 +2,7 @@
 /// \file
 /// The dielectric elastomer actuator as a right-hand side made for speed, so that step-by-step integrators compete at
 /// their best. src/kernels/plain_systems.cpp evaluates the equations as they are printed, with some twenty powers per
-/// call; this is the rearranged form of model/membrane_jet.hpp: with s = 1 + u^2, P = s^(alpha_A/2),
+/// call; this is the rearranged form of model/membrane/jet.hpp: with s = 1 + u^2, P = s^(alpha_A/2),
 /// L = (lambda_p sqrt(s)/xi)^alpha_B,
 ///
 ///     f = u { [k1 P - k2/P + k3 (L - 1/L)]/s + delta_A u s^(-3/2) x' - phi^2 },   xi' = xi (L - 1/(2 L) - 1/2)/delta_B
@@ -13,7 +13,8 @@
 #include "flow/flow.hpp"
 #include "flow/right_hand_side.hpp"
 #include "kernels/plain_systems.hpp"
-#include "model/parameters.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "numerics/dual.hpp"
 
 #include <array>
@@ -26,12 +27,10 @@ namespace percuss::bench {
 
 class LeanMembranes final : public flow::RightHandSide {
 public:
-    explicit LeanMembranes(model::StopLaw law)
-        : plain_(kernels::make_plain_system(model::ActuatorKind::dielectric_elastomer, law)) {}
+    explicit LeanMembranes(model::ContactLaw law) : plain_(kernels::make_plain_system(model::membrane::viscous, law)) {}
 
     [[nodiscard]] const flow::SystemInfo& info() const override { return plain_->info(); }
-    [[nodiscard]] flow::ContactLaw contact_law() const override { return plain_->contact_law(); }
-    [[nodiscard]] int sides() const override { return plain_->sides(); }
+    [[nodiscard]] model::ContactLaw contact_law() const override { return plain_->contact_law(); }
     [[nodiscard]] bool meaningful(const flow::State& state) const override { return plain_->meaningful(state); }
     [[nodiscard]] double centre(const flow::ParameterVector& p) const override { return plain_->centre(p); }
     [[nodiscard]] double centre_derivative(const flow::ParameterVector& p,
@@ -44,15 +43,20 @@ public:
     [[nodiscard]] double linear_resonance(const flow::ParameterVector& p) const override {
         return plain_->linear_resonance(p);
     }
+    [[nodiscard]] bool symmetric(const flow::ParameterVector& p) const override { return plain_->symmetric(p); }
+    void means(const flow::ParameterVector& p, double theta, const flow::State& state,
+               std::span<const flow::Direction> directions, flow::Means& value, flow::Means* value_d) const override {
+        plain_->means(p, theta, state, directions, value, value_d);
+    }
     void powers(const flow::ParameterVector& p, double theta, const flow::State& state,
                 std::span<const flow::Direction> directions, flow::Powers& value,
                 flow::Powers* value_d) const override {
         plain_->powers(p, theta, state, directions, value, value_d);
     }
-    [[nodiscard]] double signal(flow::PeakSignal which, int side, const flow::ParameterVector& p, double theta,
-                                const flow::State& state, std::span<const flow::Direction> directions,
-                                double* value_d) const override {
-        return plain_->signal(which, side, p, theta, state, directions, value_d);
+    [[nodiscard]] double peak(int which, int side, const flow::ParameterVector& p, double theta,
+                              const flow::State& state, std::span<const flow::Direction> directions,
+                              double* value_d) const override {
+        return plain_->peak(which, side, p, theta, state, directions, value_d);
     }
 
     void rates(const flow::ParameterVector& p, double theta, const flow::State& state, bool touching,

@@ -65,9 +65,9 @@ std::vector<Peer> peers() {
     const auto taylor = [](std::string_view set) {
         return [set](double tolerance) { return make({}, "taylor", tolerance, set); };
     };
-    const auto lean = std::make_shared<LeanMembranes>(model::StopLaw::kelvin_voigt);
+    const auto lean = std::make_shared<LeanMembranes>(model::ContactLaw::kelvin_voigt);
     const std::shared_ptr<const flow::RightHandSide> printed =
-        kernels::make_plain_system(model::ActuatorKind::dielectric_elastomer, model::StopLaw::kelvin_voigt);
+        kernels::make_plain_system(model::membrane::viscous, model::ContactLaw::kelvin_voigt);
     std::vector<Peer> list = {
         {"taylor", taylor("auto")},
         {"arkode", [lean](double tolerance) { return flow::make_erk(lean, tolerance); }, true},

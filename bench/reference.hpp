@@ -4,8 +4,8 @@
 
 #include "flow/flow.hpp"
 #include "flow/taylor.hpp"
-#include "model/membrane_jet.hpp"
-#include "model/spring_jet.hpp"
+#include "model/membrane/jet.hpp"
+#include "model/spring/jet.hpp"
 #include "scenes.hpp"
 
 #include <array>
@@ -17,7 +17,8 @@ namespace percuss::bench {
 inline constexpr int reference_order = 30;
 
 template <class Jet>
-flow::State reference_end(flow::Law law, const flow::ParameterVector& parameters, const flow::Request& request) {
+flow::State reference_end(model::ContactLaw law, const flow::ParameterVector& parameters,
+                          const flow::Request& request) {
     using T = typename Jet::Scalar;
     std::array<T, flow::max_parameters> p;
     typename Jet::State y;
@@ -37,8 +38,8 @@ flow::State reference_end(flow::Law law, const flow::ParameterVector& parameters
 inline flow::State reference_end(const SceneKind& kind, const flow::ParameterVector& parameters,
                                  const flow::Request& request) {
     using Extended = long double;
-    const auto law = static_cast<flow::Law>(kind.law);
-    if (kind.actuator == model::ActuatorKind::spring_mass) {
+    const auto law = static_cast<model::ContactLaw>(kind.law);
+    if (kind.scene == &model::spring::scene) {
         return reference_end<model::SpringJet<Extended, reference_order>>(law, parameters, request);
     }
     return reference_end<model::MembraneJet<Extended, true, reference_order>>(law, parameters, request);

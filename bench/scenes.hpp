@@ -9,7 +9,8 @@
 
 #include "flow/flow.hpp"
 #include "kernels/kernels.hpp"
-#include "model/parameters.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,9 +47,8 @@ inline flow::ParameterVector with(flow::ParameterVector p, int index, double val
 }
 
 struct SceneKind {
-    model::ActuatorKind actuator = model::ActuatorKind::dielectric_elastomer;
-    model::StopLaw law = model::StopLaw::kelvin_voigt;
-    bool viscous = true;
+    const model::Scene* scene = &model::membrane::viscous;
+    model::ContactLaw law = model::ContactLaw::kelvin_voigt;
 };
 
 inline std::unique_ptr<flow::Integrator> make(const SceneKind& kind, std::string_view integrator, double tolerance,
@@ -57,7 +57,7 @@ inline std::unique_ptr<flow::Integrator> make(const SceneKind& kind, std::string
     options.integrator = integrator;
     options.tolerance = tolerance;
     options.instruction_set = instruction_set;
-    return kernels::make_integrator(kind.actuator, kind.law, kind.viscous, options);
+    return kernels::make_integrator(*kind.scene, kind.law, options);
 }
 
 /// `cycles` drive cycles from theta = 0.

@@ -21,9 +21,10 @@
 // CASE is the last column of the table.
 
 #include "design/evaluate.hpp"
-#include "io/problem_file.hpp"
+#include "model/membrane/membrane.hpp"
 #include "scenes.hpp"
 #include "timing.hpp"
+#include "verbs/verbs.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -63,7 +64,7 @@ struct Run {
         : kind(scene),
           parameters(p),
           request(cycles_from(state)),
-          lanes(directions(scene.viscous ? 4 : 2, lane_count)),
+          lanes(directions(scene.scene->states, lane_count)),
           integrator(make(scene, "taylor", tolerance)) {
         request.directions = lanes;
         request.observe = observe;
@@ -106,8 +107,8 @@ void add_runs(Cases& cases) {
                                             {"extrema", flow::observe_extrema},
                                             {"force", flow::observe_force},
                                             {"acceleration", flow::observe_acceleration},
-                                            {"field", flow::observe_field},
-                                            {"current", flow::observe_current},
+                                            {"field", flow::observe_peak(model::membrane::field)},
+                                            {"current", flow::observe_peak(model::membrane::current)},
                                             {"energy", flow::observe_energy},
                                             {"all", flow::observe_all}}};
     for (int lanes : {0, 8}) {
@@ -120,7 +121,7 @@ void add_runs(Cases& cases) {
 
     const flow::ParameterVector elastic = with(paper_defaults, model::membrane::mu_ratio, 0.0);
     SceneKind two_states = full;
-    two_states.viscous = false;
+    two_states.scene = &model::membrane::elastic;
     const flow::State start = {paper_orbit[0], paper_orbit[1], 0.0, 0.0};
     for (int lanes : {0, 8}) {
         cases.group("No Maxwell branches (mu_ratio = 0): one period, " + std::to_string(lanes) + " lanes");
@@ -129,7 +130,7 @@ void add_runs(Cases& cases) {
     }
 
     SceneKind lawless = full;
-    lawless.law = model::StopLaw::none;
+    lawless.law = model::ContactLaw::none;
     const flow::ParameterVector clear = with(paper_defaults, model::membrane::omega, clear_omega);
     const flow::ParameterVector far = with(clear, model::membrane::gap, 10.0);
     cases.group("The stop: one period of an orbit that never touches it");
@@ -147,12 +148,12 @@ struct Evaluations {
 };
 
 design::Problem read_design(const std::filesystem::path& file) {
-    design::Problem problem = io::read_problem(file, {}).study.design;
-    if (problem.actuator.family == model::Family::dielectric_elastomer_si) {  // near the optimum of crawler.ini
-        problem.actuator.set(model::Key::layers, 3.0);
+    design::Problem problem = verbs::read_problem(file, {}).design;
+    if (problem.actuator.type == &model::membrane::si) {  // near the optimum of crawler.ini
+        problem.actuator.set(model::membrane::key::layers, 3.0);
         problem.actuator.set(model::Key::stop_gap, 0.35e-3);
         problem.actuator.set(model::Key::stop_stiffness, 95e3);
-        problem.actuator.set(model::Key::drive_voltage, 3500.0);
+        problem.actuator.set(percuss::model::membrane::key::drive_voltage, 3500.0);
     }
     return problem;
 }
@@ -160,7 +161,7 @@ design::Problem read_design(const std::filesystem::path& file) {
 void add_evaluations(Cases& cases, Evaluations& kept, const std::filesystem::path& file) {
     design::Problem problem = read_design(file);
     const std::vector<design::Quantity> force = {design::Quantity::peak_force};
-    const auto reported = design::reported_quantities(problem.actuator.family);
+    const auto reported = design::reported_quantities(*problem.actuator.type);
     const std::vector<design::Quantity> everything(reported.begin(), reported.end());
     std::vector<model::Key> variables;
     for (const design::DesignVariable& v : problem.variables) { variables.push_back(v.key); }

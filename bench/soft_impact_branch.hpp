@@ -70,7 +70,7 @@ public:
     Ours(double tolerance, double coarseness, const Reference& reference)
         : tolerance_(tolerance),
           coarseness_(coarseness),
-          integrator_(make({model::ActuatorKind::spring_mass}, "taylor", tolerance)) {
+          integrator_(make({&model::spring::scene}, "taylor", tolerance)) {
         family_ = flow::along_frequency({integrator_.get(), with(soft_impact, 7, from), nullptr}, 1.0);
         departure_.parameter = from;
         departure_.motion.form = orbit::Form::sequence;
@@ -117,7 +117,7 @@ private:
     double tolerance_;
     double coarseness_;
     std::unique_ptr<flow::Integrator> integrator_;
-    flow::Family family_;
+    flow::ParameterFamily family_;
     branch::Departure departure_;
     branch::TraceOptions options_;
 };

@@ -19,8 +19,9 @@
 
 #include "brute_force.hpp"
 #include "design/evaluate.hpp"
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "kernels/kernels.hpp"
+#include "model/membrane/membrane.hpp"
 #include "model/specification.hpp"
 #include "timing.hpp"
 
@@ -49,22 +50,26 @@ constexpr long erk_starts = 16;
 constexpr long erk_every = 13;
 constexpr long share_starts = 2048;
 
-constexpr std::array varied = {Key::nd_stiffness, Key::nd_gap,     Key::nd_voltage, Key::nd_layers,
-                               Key::nd_delta_a,   Key::nd_delta_b, Key::nd_damping};
+constexpr std::array varied = {percuss::model::membrane::key::nd_stiffness, percuss::model::membrane::key::nd_gap,
+                               percuss::model::membrane::key::nd_voltage,   percuss::model::membrane::key::nd_layers,
+                               percuss::model::membrane::key::nd_delta_a,   percuss::model::membrane::key::nd_delta_b,
+                               percuss::model::membrane::key::nd_damping};
 
-model::Specification base(model::StopLaw law) {
+model::Specification base(model::ContactLaw law) {
     model::Specification spec;
-    spec.family = model::Family::dielectric_elastomer_nondimensional;
+    spec.type = &model::membrane::nondimensional;
     spec.law = law;
-    spec.set(Key::nd_lambda_p, 1.1);
-    spec.set(Key::nd_mu_ratio, 1.0);
-    spec.set(Key::nd_alpha_a, 3.0);
-    spec.set(Key::nd_alpha_b, 2.0);
-    spec.set(Key::nd_length, 0.8);
+    spec.set(percuss::model::membrane::key::nd_lambda_p, 1.1);
+    spec.set(percuss::model::membrane::key::nd_mu_ratio, 1.0);
+    spec.set(percuss::model::membrane::key::nd_alpha_a, 3.0);
+    spec.set(percuss::model::membrane::key::nd_alpha_b, 2.0);
+    spec.set(percuss::model::membrane::key::nd_length, 0.8);
     return spec;
 }
 
-model::StopLaw law_of(long i) { return i % 2 == 0 ? model::StopLaw::kelvin_voigt : model::StopLaw::no_tension; }
+model::ContactLaw law_of(long i) {
+    return i % 2 == 0 ? model::ContactLaw::kelvin_voigt : model::ContactLaw::no_tension;
+}
 
 model::Specification draw(std::uint64_t seed, long i) {
     std::seed_seq seeds{seed, static_cast<std::uint64_t>(i)};
@@ -74,13 +79,13 @@ model::Specification draw(std::uint64_t seed, long i) {
     };
     const auto logarithmic = [&](double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); };
     model::Specification spec = base(law_of(i));
-    spec.set(Key::nd_stiffness, logarithmic(1e2, 1e6));
-    spec.set(Key::nd_gap, logarithmic(0.01, 0.4));
-    spec.set(Key::nd_voltage, uniform(0.1, 0.7));
-    spec.set(Key::nd_layers, std::floor(uniform(1.0, 9.0)));
-    spec.set(Key::nd_delta_a, logarithmic(0.02, 1.0));
-    spec.set(Key::nd_delta_b, logarithmic(5.0, 500.0));
-    spec.set(Key::nd_damping, uniform(0.0, 20.0));
+    spec.set(percuss::model::membrane::key::nd_stiffness, logarithmic(1e2, 1e6));
+    spec.set(percuss::model::membrane::key::nd_gap, logarithmic(0.01, 0.4));
+    spec.set(percuss::model::membrane::key::nd_voltage, uniform(0.1, 0.7));
+    spec.set(percuss::model::membrane::key::nd_layers, std::floor(uniform(1.0, 9.0)));
+    spec.set(percuss::model::membrane::key::nd_delta_a, logarithmic(0.02, 1.0));
+    spec.set(percuss::model::membrane::key::nd_delta_b, logarithmic(5.0, 500.0));
+    spec.set(percuss::model::membrane::key::nd_damping, uniform(0.0, 20.0));
     return spec;
 }
 
@@ -105,17 +110,17 @@ struct Row {
 
 /// The Evaluators of both stop laws; the demand.
 struct Bench {
-    design::Evaluator kelvin_voigt = make(model::StopLaw::kelvin_voigt);
-    design::Evaluator no_tension = make(model::StopLaw::no_tension);
+    design::Evaluator kelvin_voigt = make(model::ContactLaw::kelvin_voigt);
+    design::Evaluator no_tension = make(model::ContactLaw::no_tension);
     design::Demand demand;
 
     Bench() {
-        const auto quantities = design::reported_quantities(model::Family::dielectric_elastomer_nondimensional);
+        const auto quantities = design::reported_quantities(model::membrane::nondimensional);
         demand.quantities.assign(quantities.begin(), quantities.end());
         demand.gradients.assign(varied.begin(), varied.end());
         demand.error_estimates = true;
     }
-    static design::Evaluator make(model::StopLaw law) {
+    static design::Evaluator make(model::ContactLaw law) {
         design::Problem problem;
         problem.actuator = draw(0, 0);
         problem.actuator.law = law;
@@ -123,7 +128,7 @@ struct Bench {
         return design::Evaluator(problem);
     }
     [[nodiscard]] const design::Evaluator& of(const model::Specification& spec) const {
-        return spec.law == model::StopLaw::kelvin_voigt ? kelvin_voigt : no_tension;
+        return spec.law == model::ContactLaw::kelvin_voigt ? kelvin_voigt : no_tension;
     }
 };
 
@@ -165,7 +170,7 @@ void evaluate(const Bench& bench, Row& row) {
 
 BruteForce follow(const Row& row, const char* integrator, double tolerance, const BruteForceOptions& options) {
     const auto kernel =
-        kernels::make_integrator(model::ActuatorKind::dielectric_elastomer, row.spec.law, true,
+        kernels::make_integrator(model::membrane::viscous, row.spec.law,
                                  {.integrator = integrator, .tolerance = tolerance, .instruction_set = "auto"});
     flow::System system{kernel.get(), model::scale(row.spec).parameters, nullptr};
     system = system.at_omega(row.evaluation.operating_point.omega);
@@ -220,16 +225,20 @@ std::string text_of(const Row& row) {
 
 void print_design(const Row& row) {
     std::printf("  %ld (%s, k %.6g g %.6g phi %.6g layers %.0f delta_A %.6g delta_B %.6g delta_i %.6g)\n", row.number,
-                row.spec.law == model::StopLaw::kelvin_voigt ? "kelvin-voigt" : "no-tension",
-                row.spec.value(Key::nd_stiffness), row.spec.value(Key::nd_gap), row.spec.value(Key::nd_voltage),
-                row.spec.value(Key::nd_layers), row.spec.value(Key::nd_delta_a), row.spec.value(Key::nd_delta_b),
-                row.spec.value(Key::nd_damping));
+                row.spec.law == model::ContactLaw::kelvin_voigt ? "kelvin-voigt" : "no-tension",
+                row.spec.value(percuss::model::membrane::key::nd_stiffness),
+                row.spec.value(percuss::model::membrane::key::nd_gap),
+                row.spec.value(percuss::model::membrane::key::nd_voltage),
+                row.spec.value(percuss::model::membrane::key::nd_layers),
+                row.spec.value(percuss::model::membrane::key::nd_delta_a),
+                row.spec.value(percuss::model::membrane::key::nd_delta_b),
+                row.spec.value(percuss::model::membrane::key::nd_damping));
 }
 
 void write_row(std::FILE* file, const Row& row) {
     const Evaluation& e = row.evaluation;
     std::fprintf(file, "%ld,%s", row.number,
-                 row.spec.law == model::StopLaw::kelvin_voigt ? "kelvin-voigt" : "no-tension");
+                 row.spec.law == model::ContactLaw::kelvin_voigt ? "kelvin-voigt" : "no-tension");
     for (const Key key : varied) { std::fprintf(file, ",%.17g", row.spec.value(key)); }
     std::fprintf(file, ",%s,%s,%d,%.4f,%.4f,%.0f,%d,%.10g,%.6g,%.6g,%ld,%.4g,\"%s\"\n",
                  std::string(status_of(row)).c_str(), std::string(design::to_string(e.uniqueness.verdict)).c_str(),

@@ -2,6 +2,7 @@
 
 #include "attractor/ensemble.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
 #include "orbit/polish.hpp"
 #include "relative.hpp"
 
@@ -40,7 +41,7 @@ constexpr flow::State scale = {0.15, 0.4, 0.1, 0.1};
 }  // namespace
 
 TEST_CASE("a trap holds what its orbit attracts and not its saddle") {
-    const auto integrator = test::membranes(model::StopLaw::kelvin_voigt, 1e-8);
+    const auto integrator = test::membranes(model::ContactLaw::kelvin_voigt, 1e-8);
     const flow::System system = system_at(*integrator, 2.2);
     const auto& struck = test::reference_orbits[1];
     const auto& saddle = test::reference_orbits[2];
@@ -189,8 +190,8 @@ TEST_CASE("starts that come to rest on a stiff stop for a while are followed on"
                                      0.17525032942320956,
                                      7.0,
                                      5.05094986034};
-    const auto integrator = test::membranes(model::StopLaw::no_tension);
-    const auto loose = test::membranes(model::StopLaw::no_tension, 1e-8);
+    const auto integrator = test::membranes(model::ContactLaw::no_tension);
+    const auto loose = test::membranes(model::ContactLaw::no_tension, 1e-8);
     const flow::System system{integrator.get(), p, nullptr};
     const flow::System scout{loose.get(), p, nullptr};
     const orbit::Orbit struck =
@@ -241,8 +242,8 @@ TEST_CASE("chaos with a known exponent: Ueda's oscillator") {
     // x'' + 0.05 x' + x^3 = 7.5 cos t; largest exponent 0.1034 per unit of time (J. C. Sprott, Chaos and Time-Series
     // Analysis, Oxford 2003, appendix A).
     const flow::ParameterVector ueda = {0.05, 0.0, 1.0, 7.5, 0.0, 0.0, 0.0, 1.0};
-    const auto exact_integrator = test::spring(model::StopLaw::none);
-    const auto scout_integrator = test::spring(model::StopLaw::none, 1e-8);
+    const auto exact_integrator = test::spring(model::ContactLaw::none);
+    const auto scout_integrator = test::spring(model::ContactLaw::none, 1e-8);
     const flow::System exact{exact_integrator.get(), ueda, nullptr};
     const flow::System scout{scout_integrator.get(), ueda, nullptr};
     const Box box{{-4.0, -6.0}, {4.0, 6.0}};
@@ -250,9 +251,9 @@ TEST_CASE("chaos with a known exponent: Ueda's oscillator") {
     options.starts = 100;
     options.max_cycles = 300;
     options.jobs = 2;
-    const Ensemble ensemble = attractor::find_motions({exact, scout}, box, options);
-    REQUIRE(ensemble.motions.size() == 1);  // all starts are told to be on one and the same motion
-    const attractor::Motion& chaos = ensemble.motions[0];
+    const Ensemble ensemble = attractor::find_attractors({exact, scout}, box, options);
+    REQUIRE(ensemble.attractors.size() == 1);  // all starts are told to be on one and the same motion
+    const attractor::Attractor& chaos = ensemble.attractors[0];
     CHECK(chaos.kind == Kind::chaotic);
     CHECK(chaos.period == 0);
     CHECK(chaos.starts == 100);
@@ -281,19 +282,19 @@ TEST_CASE("chaos with a known exponent: Ueda's oscillator") {
 
 TEST_CASE("an impacting actuator in chaos, and what refutes an orbit there") {
     const auto exact_integrator = test::membranes();
-    const auto scout_integrator = test::membranes(model::StopLaw::kelvin_voigt, 1e-8);
+    const auto scout_integrator = test::membranes(model::ContactLaw::kelvin_voigt, 1e-8);
     const flow::System exact = system_at(*exact_integrator, 1.7);
     const flow::System scout = system_at(*scout_integrator, 1.7);
     EnsembleOptions options;
     options.starts = 64;
     options.max_cycles = 400;
     const Box box = attractor::ensemble_box(exact, attractor::amplitude_to_expect(scout));
-    const Ensemble ensemble = attractor::find_motions({exact, scout}, box, options);
-    REQUIRE(ensemble.motions.size() == 1);
-    CHECK(ensemble.motions[0].kind == Kind::chaotic);
-    CHECK(ensemble.motions[0].exponent.value == doctest::Approx(0.4).epsilon(0.1));
-    CHECK(ensemble.motions[0].peak_force > 5.0);
-    CHECK(ensemble.motions[0].starts == 64);
+    const Ensemble ensemble = attractor::find_attractors({exact, scout}, box, options);
+    REQUIRE(ensemble.attractors.size() == 1);
+    CHECK(ensemble.attractors[0].kind == Kind::chaotic);
+    CHECK(ensemble.attractors[0].exponent.value == doctest::Approx(0.4).epsilon(0.1));
+    CHECK(ensemble.attractors[0].peak_force > 5.0);
+    CHECK(ensemble.attractors[0].starts == 64);
 }
 
 TEST_CASE("a motion on a torus is quasi-periodic") {
@@ -302,7 +303,7 @@ TEST_CASE("a motion on a torus is quasi-periodic") {
     p[model::membrane::delta_a] = 0.022;
     p[model::membrane::delta_b] = 390.0;
     p[model::membrane::omega] = 1.785;
-    const auto integrator = test::membranes(model::StopLaw::none, 1e-10);
+    const auto integrator = test::membranes(model::ContactLaw::none, 1e-10);
     const flow::System system{integrator.get(), p, nullptr};
     flow::State y = {0.9352, -0.0530, 1.2337, 1.2336};
     for (int i = 0; i < 500; ++i) { y = one_cycle(system, y); }

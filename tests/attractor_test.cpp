@@ -2,6 +2,7 @@
 
 #include "attractor/ensemble.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
 #include "orbit/polish.hpp"
 #include "relative.hpp"
 
@@ -14,11 +15,11 @@
 namespace {
 
 using namespace percuss;
+using attractor::Attractor;
 using attractor::Box;
 using attractor::Ensemble;
 using attractor::EnsembleOptions;
 using attractor::Kind;
-using attractor::Motion;
 using attractor::Refutation;
 using test::at;
 using test::paper_defaults;
@@ -26,7 +27,7 @@ using test::paper_defaults;
 /// The paper's actuator at a frequency, with the two integrators that an ensemble takes.
 struct Case {
     std::unique_ptr<flow::Integrator> exact_integrator = test::membranes();
-    std::unique_ptr<flow::Integrator> scout_integrator = test::membranes(model::StopLaw::kelvin_voigt, 1e-8);
+    std::unique_ptr<flow::Integrator> scout_integrator = test::membranes(model::ContactLaw::kelvin_voigt, 1e-8);
     flow::System exact, scout;
     Box box;
 
@@ -36,7 +37,7 @@ struct Case {
           box(attractor::ensemble_box(exact, attractor::amplitude_to_expect(scout))) {}
 
     [[nodiscard]] Ensemble motions(const EnsembleOptions& options = {}) const {
-        return attractor::find_motions({exact, scout}, box, options);
+        return attractor::find_attractors({exact, scout}, box, options);
     }
     [[nodiscard]] orbit::Orbit orbit(const flow::State& from, int period) const {
         return orbit::polish_orbit(exact, from, period);
@@ -45,8 +46,8 @@ struct Case {
 
 /// c k1 k3 F gap k delta_i omega
 struct SpringCase {
-    std::unique_ptr<flow::Integrator> exact_integrator = test::spring(model::StopLaw::none);
-    std::unique_ptr<flow::Integrator> scout_integrator = test::spring(model::StopLaw::none, 1e-8);
+    std::unique_ptr<flow::Integrator> exact_integrator = test::spring(model::ContactLaw::none);
+    std::unique_ptr<flow::Integrator> scout_integrator = test::spring(model::ContactLaw::none, 1e-8);
     flow::System exact, scout;
     explicit SpringCase(const flow::ParameterVector& p)
         : exact{exact_integrator.get(), p, nullptr},
@@ -54,14 +55,14 @@ struct SpringCase {
 };
 constexpr flow::ParameterVector duffing = {0.05, 1.0, 0.1, 0.18, 0.0, 0.0, 0.0, 1.2};
 
-const Motion* with_force(const Ensemble& ensemble, double peak_force, double within) {
-    for (const Motion& motion : ensemble.motions) {
+const Attractor* with_force(const Ensemble& ensemble, double peak_force, double within) {
+    for (const Attractor& motion : ensemble.attractors) {
         if (std::abs(motion.peak_force - peak_force) < within) { return &motion; }
     }
     return nullptr;
 }
 
-bool same_bits(const Motion& a, const Motion& b) {
+bool same_bits(const Attractor& a, const Attractor& b) {
     return a.kind == b.kind && a.period == b.period && a.state == b.state && a.peak_force == b.peak_force &&
            a.x_max == b.x_max && a.x_min == b.x_min && a.contacts_per_cycle == b.contacts_per_cycle &&
            a.exponent.value == b.exponent.value && a.starts == b.starts && a.share.lower == b.share.lower;
@@ -70,8 +71,8 @@ bool same_bits(const Motion& a, const Motion& b) {
 bool same_bits(const Ensemble& a, const Ensemble& b) {
     return a.status == b.status && a.led_to == b.led_to && a.starts == b.starts && a.cycles == b.cycles &&
            a.missed_share_bound == b.missed_share_bound &&
-           std::equal(a.motions.begin(), a.motions.end(), b.motions.begin(), b.motions.end(),
-                      [](const Motion& x, const Motion& y) { return same_bits(x, y); });
+           std::equal(a.attractors.begin(), a.attractors.end(), b.attractors.begin(), b.attractors.end(),
+                      [](const Attractor& x, const Attractor& y) { return same_bits(x, y); });
 }
 
 }  // namespace
@@ -187,10 +188,10 @@ TEST_CASE("three stable motions at 1.78, whatever the seed") {
         options.seed = seed;
         const Ensemble ensemble = c.motions(options);
         CHECK(ensemble.status == Ensemble::Status::done);
-        CHECK(ensemble.motions.size() == 3);
-        const Motion* low = with_force(ensemble, 3.04, 5e-3);
-        const Motion* third = with_force(ensemble, 5.40627738, 6e-9 * 5.4);
-        const Motion* high = with_force(ensemble, 7.466, 5e-4);
+        CHECK(ensemble.attractors.size() == 3);
+        const Attractor* low = with_force(ensemble, 3.04, 5e-3);
+        const Attractor* third = with_force(ensemble, 5.40627738, 6e-9 * 5.4);
+        const Attractor* high = with_force(ensemble, 7.466, 5e-4);
         REQUIRE(low != nullptr);
         REQUIRE(third != nullptr);
         REQUIRE(high != nullptr);
@@ -214,20 +215,20 @@ TEST_CASE("known motions at other frequencies") {
     options.starts = 192;
     const Ensemble at_1_65 = Case(1.65).motions(options);
     CHECK(at_1_65.unclassified == 0);
-    for (const Motion& motion : at_1_65.motions) { CHECK(motion.period != 1); }
-    REQUIRE_FALSE(at_1_65.motions.empty());
+    for (const Attractor& motion : at_1_65.attractors) { CHECK(motion.period != 1); }
+    REQUIRE_FALSE(at_1_65.attractors.empty());
 
     const Ensemble at_1_9 = Case(1.9).motions(options);
-    REQUIRE(at_1_9.motions.size() == 1);
-    CHECK(at_1_9.motions[0].starts == 192);
-    CHECK(test::distance(at_1_9.motions[0].state, test::reference_orbits[0].state, 4) < 1e-12);
-    CHECK(at_1_9.motions[0].amplitude() == test::relative(0.110756049472569, 1e-11));
+    REQUIRE(at_1_9.attractors.size() == 1);
+    CHECK(at_1_9.attractors[0].starts == 192);
+    CHECK(test::distance(at_1_9.attractors[0].state, test::reference_orbits[0].state, 4) < 1e-12);
+    CHECK(at_1_9.attractors[0].amplitude() == test::relative(0.110756049472569, 1e-11));
     CHECK(at_1_9.missed_share_bound == attractor::share_bound(0, 192));
 
     const Ensemble at_2_2 = Case(2.2).motions(options);
-    REQUIRE(at_2_2.motions.size() == 2);
-    const Motion* struck = with_force(at_2_2, 9.721692402, 1e-8);
-    const Motion* clear = with_force(at_2_2, 0.0, 1e-300);
+    REQUIRE(at_2_2.attractors.size() == 2);
+    const Attractor* struck = with_force(at_2_2, 9.721692402, 1e-8);
+    const Attractor* clear = with_force(at_2_2, 0.0, 1e-300);
     REQUIRE(struck != nullptr);
     REQUIRE(clear != nullptr);
     CHECK(struck->period == 1);
@@ -242,16 +243,16 @@ TEST_CASE("duffing: both motions, without a stop to give the box its size") {
     const Box box = attractor::ensemble_box(spring.exact, attractor::amplitude_to_expect(spring.scout));
     EnsembleOptions options;
     options.starts = 128;
-    const Ensemble ensemble = attractor::find_motions({spring.exact, spring.scout}, box, options);
-    REQUIRE(ensemble.motions.size() == 2);
+    const Ensemble ensemble = attractor::find_attractors({spring.exact, spring.scout}, box, options);
+    REQUIRE(ensemble.attractors.size() == 2);
     CHECK(ensemble.unclassified == 0);
-    for (const Motion& motion : ensemble.motions) {
+    for (const Attractor& motion : ensemble.attractors) {
         CHECK(motion.period == 1);
         CHECK(motion.starts > 30);
         // Liouville: the multipliers' product is exp(-c 2 pi/omega), both have its root as modulus (complex pair).
         CHECK(std::abs(motion.multipliers[0]) == test::relative(std::exp(-0.05 * test::pi / 1.2), 1e-9));
     }
-    CHECK(std::abs(ensemble.motions[0].amplitude() - ensemble.motions[1].amplitude()) > 1.0);
+    CHECK(std::abs(ensemble.attractors[0].amplitude() - ensemble.attractors[1].amplitude()) > 1.0);
 }
 
 TEST_CASE("every captured start really goes where it is said to go") {
@@ -271,7 +272,7 @@ TEST_CASE("every captured start really goes where it is said to go") {
         request.max_events = 10000;
         c.scout.integrator->run_ensemble(c.scout.parameters, request, members);
         std::vector<attractor::Trap> traps;
-        for (const Motion& motion : ensemble.motions) {
+        for (const Attractor& motion : ensemble.attractors) {
             traps.emplace_back(c.scout, motion.orbit, attractor::half_widths(c.box, 4));
         }
         for (std::size_t i = 0; i < members.size(); ++i) {
@@ -345,14 +346,14 @@ TEST_CASE("asked to stop, an ensemble keeps the blocks that were finished") {
     const Case c(1.78);
     EnsembleOptions options;
     std::atomic<int> asked{0};
-    options.stop_requested = [&] { return ++asked > 12; };
+    options.cancelled = [&] { return ++asked > 12; };
     const Ensemble ensemble = c.motions(options);
-    CHECK(ensemble.status == Ensemble::Status::stopped);
+    CHECK(ensemble.status == Ensemble::Status::cancelled);
     CHECK(ensemble.starts < 512);
     CHECK(ensemble.starts % 64 == 0);
     const orbit::Orbit third = c.orbit(test::reference_orbits[5].state, 3);
-    options.stop_requested = [] { return true; };
-    CHECK(attractor::refute({c.exact, c.scout}, third, c.box, options).status == Refutation::Status::stopped);
+    options.cancelled = [] { return true; };
+    CHECK(attractor::refute({c.exact, c.scout}, third, c.box, options).status == Refutation::Status::cancelled);
     CHECK(Ensemble{}.status == Ensemble::Status::not_run);
     CHECK(Refutation{}.status == Refutation::Status::not_run);
 }
@@ -362,19 +363,35 @@ TEST_CASE("misuse of ensembles throws") {
     const attractor::Systems systems{c.exact, c.scout};
     EnsembleOptions options;
     options.starts = 0;
-    CHECK_THROWS_AS(attractor::find_motions(systems, c.box, options), std::invalid_argument);
+    CHECK_THROWS_AS(attractor::find_attractors(systems, c.box, options), std::invalid_argument);
     options = {};
     options.jobs = 0;
-    CHECK_THROWS_AS(attractor::find_motions(systems, c.box, options), std::invalid_argument);
+    CHECK_THROWS_AS(attractor::find_attractors(systems, c.box, options), std::invalid_argument);
     options = {};
     options.max_cycles = 0;
-    CHECK_THROWS_AS(attractor::find_motions(systems, c.box, options), std::invalid_argument);
+    CHECK_THROWS_AS(attractor::find_attractors(systems, c.box, options), std::invalid_argument);
     options = {};
     Box reversed = c.box;
     std::swap(reversed.lower[0], reversed.upper[0]);
-    CHECK_THROWS_AS(attractor::find_motions(systems, reversed, options), std::invalid_argument);
+    CHECK_THROWS_AS(attractor::find_attractors(systems, reversed, options), std::invalid_argument);
     const orbit::Orbit saddle = c.orbit(test::reference_orbits[2].state, 1);
     REQUIRE(saddle.ok());
     CHECK_THROWS_AS(attractor::refute(systems, saddle, c.box, options), std::invalid_argument);
     CHECK_THROWS_AS(attractor::refute(systems, orbit::Orbit{}, c.box, options), std::invalid_argument);
+}
+
+TEST_CASE("a box narrower than what states resolve: its starts are classified as those of a wider one") {
+    const Case c(1.9);
+    EnsembleOptions options;
+    options.starts = 64;
+    for (const double width : {1e-6, 1e-9, 1e-12, 1e-15}) {
+        CAPTURE(width);
+        attractor::Box box{{0.5, 0.0, 1.0, 1.0}, {0.5, 0.0, 1.0, 1.0}};
+        for (std::size_t k = 0; k < 4; ++k) { box.upper[k] += width; }
+        const Ensemble ensemble = attractor::find_attractors({c.exact, c.scout}, box, options);
+        CHECK(ensemble.unclassified == 0);
+        REQUIRE(ensemble.attractors.size() == 1);
+        CHECK(ensemble.attractors[0].starts == 64);
+        CHECK(test::distance(ensemble.attractors[0].state, test::reference_orbits[0].state, 4) < 1e-12);
+    }
 }

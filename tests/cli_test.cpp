@@ -3,7 +3,11 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
+#include <cstdio>
+#include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -37,8 +41,27 @@ TEST_CASE("version and help") {
         CHECK(verb_help.exit_code == 0);
         CHECK(has(verb_help.out, "stop.gap"));
         CHECK(has(verb_help.out, "nondimensional.delta_i"));
-        CHECK(has(verb_help.out, "design.limit"));
+        const bool designs = std::string(verb) != "simulate" && std::string(verb) != "sweep";
+        CHECK(has(verb_help.out, "design.limit") == designs);  // a verb lists the keys that it reads
         CHECK(verb_help.err.empty());
+    }
+    CHECK_FALSE(has(run(folder, {"orbit", "--help"}).out, "sweep.from"));
+    CHECK(has(run(folder, {"orbit", "--help"}).out, "at most 64"));
+    CHECK(run(folder, {"help"}).out == help.out);
+    const Outcome keys = run(folder, {"help", "keys"});
+    for (const char* key : {"stop.gap", "sweep.from", "optimiser.method", "design.limit"}) {
+        CHECK(has(keys.out, key));
+    }
+    const Outcome quantities = run(folder, {"help", "quantities"});
+    CHECK(quantities.exit_code == 0);
+    for (const char* word : {"peak_force", "electric_field", "[nondimensional]"}) { CHECK(has(quantities.out, word)); }
+    // Wrapped to 80 columns where there is no terminal.
+    for (const std::string& text : {help.out, keys.out, quantities.out, run(folder, {"optimise", "--help"}).out}) {
+        std::istringstream stream(text);
+        for (std::string line; std::getline(stream, line);) {
+            CAPTURE(line);
+            CHECK(line.size() <= 80);
+        }
     }
 }
 
@@ -265,6 +288,120 @@ TEST_CASE("results folders are replaced only when they may be") {
     const ScratchFolder clean;
     CHECK(run(clean, {"orbit", duffing, "--out", "none"}).exit_code == 0);
     CHECK(fs::is_empty(clean.path()));
+}
+
+TEST_CASE("results of another problem are replaced only on demand, and have a folder of their own by default") {
+    const ScratchFolder folder;
+    const std::string duffing = shipped("duffing.ini");
+    const fs::path results = folder.path() / "results";
+    REQUIRE(run(folder, {"orbit", duffing, "--quiet"}).exit_code == 0);
+    const std::string first = read_file(results / "duffing-orbit" / "result.json");
+
+    // An option that changes the problem: beside the first, six digits of the hash in the name.
+    const Outcome changed = run(folder, {"orbit", duffing, "--spring-mass.force", "0.01 N", "--json"});
+    REQUIRE(changed.exit_code == 0);
+    CHECK(read_file(results / "duffing-orbit" / "result.json") == first);
+    const std::string hash =
+        nlohmann::json::parse(run(folder, {"check", duffing, "--spring-mass.force", "0.01 N", "--json"}).out)
+            .at("hash");
+    CHECK(read_file(results / ("duffing-orbit-" + hash.substr(0, 6)) / "result.json") == changed.out);
+
+    // The same folder for another problem: refused, and replaced with --force.
+    const std::vector<std::string> other = {
+        "orbit", duffing, "--spring-mass.force", "0.01 N", "--out", "results/duffing-orbit", "--quiet"};
+    const Outcome refused = run(folder, other);
+    CHECK(refused.exit_code == 2);
+    CHECK(lines(refused.err) == 1);
+    CHECK(has(refused.err, "--force"));
+    CHECK(read_file(results / "duffing-orbit" / "result.json") == first);
+    auto forced = other;
+    forced.emplace_back("--force");
+    CHECK(run(folder, forced).exit_code == 0);
+    CHECK(read_file(results / "duffing-orbit" / "result.json") != first);
+}
+
+TEST_CASE("a folder that another run writes into is refused, forced or not") {
+    const ScratchFolder folder;
+    const std::string paper = shipped("wu2022-nondimensional.ini");
+    const std::vector<std::string> endless = {
+        "attractors", paper, "--nondimensional.omega", "1.9", "--starts", "10000000", "--out", "here", "--quiet"};
+    // A long run in the background, ended by its time limit; the second comes while it runs.
+    const std::string first =
+        "{ ( \"$PERCUSS_BIN\" attractors '" + paper +
+        "' --nondimensional.omega 1.9 --starts 10000000 --out here --quiet --time-limit 6 "
+        ">first.out 2>first.err; echo $? >first.code ) & } ; while ! test -e here/manifest.json; do "
+        "sleep 0.1; done; ";
+    for (const bool force : {false, true}) {
+        std::vector<std::string> arguments = endless;
+        if (force) { arguments.emplace_back("--force"); }
+        const Outcome second = run(folder, arguments, force ? "" : first);
+        CHECK(second.exit_code == 2);
+        CHECK(lines(second.err) == 1);
+        CHECK(has(second.err, "another run"));
+    }
+    for (int i = 0; i < 200 && !fs::exists(folder.path() / "first.code"); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    CHECK(read_file(folder.path() / "first.code") == "4\n");
+    CHECK(has(read_file(folder.path() / "here" / "manifest.json"), "\"finished\""));
+    CHECK_FALSE(fs::exists(folder.path() / "here" / ".percuss-lock"));
+
+    // The lock of a run that was killed is no lock.
+    folder.write("here/.percuss-lock", "");
+    std::vector<std::string> again = endless;
+    again.insert(again.end(), {"--time-limit", "0.2"});
+    CHECK(run(folder, again).exit_code == 4);
+}
+
+TEST_CASE("a failing exit code says why in one line, with --json too") {
+    const ScratchFolder folder;
+    for (const bool json : {false, true}) {
+        std::vector<std::string> arguments = {
+            "evaluate", shipped("wu2022-nondimensional.ini"), "--nondimensional.omega", "6", "--out", "none"};
+        if (json) { arguments.emplace_back("--json"); }
+        const Outcome none = run(folder, arguments);
+        CAPTURE(none.err);
+        CHECK(none.exit_code == 3);
+        CHECK(lines(none.err) == 1);
+        CHECK(has(none.err, "no-impact"));
+    }
+}
+
+TEST_CASE("documents in SI tell angular frequencies in rad/s and the nondimensional ones beside them") {
+    const ScratchFolder folder;
+    const Outcome outcome =
+        run(folder, {"evaluate", shipped("wu2022-actuator.ini"), "--gradients", "--json", "--out", "none"});
+    REQUIRE(outcome.exit_code == 0);
+    const auto document = nlohmann::json::parse(outcome.out);
+    const auto& point = document.at("operating_point");
+    const double hertz = point.at("drive_frequency");
+    const double omega = point.at("omega");
+    const double plain = point.at("omega_nondimensional");
+    CHECK(omega == doctest::Approx(2.0 * 3.14159265358979323846 * hertz).epsilon(1e-14));
+    CHECK(plain < 10.0);
+    const double edge = point.at("edge_omega");
+    CHECK(edge / omega == doctest::Approx(point.at("edge_omega_nondimensional").get<double>() / plain).epsilon(1e-14));
+
+    // Gradients are those of the numbers told: against a central difference in a key that the time unit depends on.
+    const double mass = document.at("design").at("actuator.moving_mass");
+    const auto at = [&](double m) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.17g", m);
+        const Outcome there = run(folder, {"evaluate", shipped("wu2022-actuator.ini"), "--actuator.moving_mass", text,
+                                           "--json", "--out", "none"});
+        REQUIRE(there.exit_code == 0);
+        return nlohmann::json::parse(there.out).at("operating_point");
+    };
+    const double step = 1e-4 * mass;  // truncation 1e-8, rounding of the edge 1e-12 / 1e-4
+    const auto above = at(mass + step);
+    const auto below = at(mass - step);
+    for (const char* name : {"omega", "edge_omega", "omega_nondimensional", "drive_frequency"}) {
+        CAPTURE(name);
+        const double difference = (above.at(name).get<double>() - below.at(name).get<double>()) / (2.0 * step);
+        const double exact =
+            document.at("gradients").at(std::string("operating_point.") + name).at("actuator.moving_mass");
+        CHECK(exact == doctest::Approx(difference).epsilon(1e-6));
+    }
 }
 
 TEST_CASE("readable output names quantities, units and how uniqueness was checked") {

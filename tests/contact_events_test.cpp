@@ -1,6 +1,8 @@
 // Contact events of the Taylor integrator: where they are, that none is missed and none invented.
 
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "orbit/orbit.hpp"
 #include "piecewise_linear.hpp"
 #include "relative.hpp"
@@ -13,7 +15,7 @@
 using namespace percuss;
 using flow::ParameterVector;
 using flow::Status;
-using model::StopLaw;
+using model::ContactLaw;
 using test::at;
 using test::membranes;
 using test::paper_defaults;
@@ -56,7 +58,7 @@ TEST_CASE("a linear oscillator with a stop: every contact where the exact soluti
     std::size_t reloads = 0;
     for (int trial = 0; trial < 130; ++trial) {
         CAPTURE(trial);
-        const StopLaw law = trial % 2 == 0 ? StopLaw::kelvin_voigt : StopLaw::no_tension;
+        const ContactLaw law = trial % 2 == 0 ? ContactLaw::kelvin_voigt : ContactLaw::no_tension;
         ParameterVector p = {random.uniform(0.0, 0.3),
                              1.0,
                              0.0,
@@ -112,8 +114,10 @@ TEST_CASE("a linear oscillator with a stop: every contact where the exact soluti
             CHECK(std::abs(found.state_in[1] - static_cast<double>(wanted.v_in)) < 10.0 * blur);
             CHECK(std::abs(found.state_out[1] - static_cast<double>(wanted.v_out)) <
                   10.0 * blur * p[model::spring::stop_stiffness]);
-            if (!found.open_in && law == StopLaw::kelvin_voigt) { CHECK(found.state_in[0] == p[model::spring::gap]); }
-            if (law == StopLaw::no_tension && !found.open_in && found.state_in[0] > p[model::spring::gap]) {
+            if (!found.open_in && law == ContactLaw::kelvin_voigt) {
+                CHECK(found.state_in[0] == p[model::spring::gap]);
+            }
+            if (law == ContactLaw::no_tension && !found.open_in && found.state_in[0] > p[model::spring::gap]) {
                 ++reloads;
             }
         }
@@ -138,13 +142,13 @@ TEST_CASE("a long, strongly damped contact: its integrals are as good as its end
     request.state = {-0.2, 0.5};
     request.duration = 12.0;
     request.observe = flow::observe_force;
-    test::PiecewiseLinear exact(p, StopLaw::kelvin_voigt);
+    test::PiecewiseLinear exact(p, ContactLaw::kelvin_voigt);
     exact.run(request.state, 0.0, request.duration);
     REQUIRE(exact.contact_time() > 2.0);
     for (const double tolerance : {1e-8, 1e-10}) {
         CAPTURE(tolerance);
         const flow::Observables seen =
-            test::run(*test::spring(StopLaw::kelvin_voigt, tolerance), p, request).observables;
+            test::run(*test::spring(ContactLaw::kelvin_voigt, tolerance), p, request).observables;
         // Errors of 0.001 to 0.02 of the tolerance were seen; with the work's product of series cut at the order of
         // its factors it was 0.16 to 1.
         CHECK(std::abs(seen.impulse.value - static_cast<double>(exact.impulse())) < 0.1 * tolerance);
@@ -155,7 +159,7 @@ TEST_CASE("a long, strongly damped contact: its integrals are as good as its end
 TEST_CASE("overshoots down to 1e-12 of the amplitude are found from every start, and no contact is invented") {
     for (double w : {0.7, 1.3}) {
         const Steady motion = steady(0.1, w, 0.4);
-        for (const StopLaw law : {StopLaw::kelvin_voigt, StopLaw::no_tension}) {
+        for (const ContactLaw law : {ContactLaw::kelvin_voigt, ContactLaw::no_tension}) {
             const auto integrator = test::spring(law);
             for (double overshoot : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
                 CAPTURE(w);
@@ -234,7 +238,7 @@ TEST_CASE("the membranes' free motion just reaching the stop is caught, just mis
 TEST_CASE("a contact ends once: no second event at the instant of release") {
     // Stops from soft to very stiff, undamped to strongly damped; the exact solution has one contact per crossing.
     const Steady motion = steady(0.1, 1.0, 0.05);
-    for (const StopLaw law : {StopLaw::kelvin_voigt, StopLaw::no_tension}) {
+    for (const ContactLaw law : {ContactLaw::kelvin_voigt, ContactLaw::no_tension}) {
         const auto integrator = test::spring(law);
         for (double k : {1e1, 1e3, 1e5, 1e7}) {
             for (double damping : {0.0, 1e-3, 1.0, 30.0}) {
@@ -295,7 +299,7 @@ TEST_CASE("starts on the surface, inside the stop, and marked as having just ent
     CHECK(inside.contacts.front().open_in);
     // No force while it moves out fast under the no-tension law: no contact at all.
     request.state = {0.401, -0.7};
-    CHECK(test::run(*test::spring(StopLaw::no_tension), p, request).contacts.empty());
+    CHECK(test::run(*test::spring(ContactLaw::no_tension), p, request).contacts.empty());
     // Contact under way at the end.
     request.state = {0.3, 0.7};
     request.duration = 0.2;
@@ -338,7 +342,7 @@ TEST_CASE("the cap on events") {
 
 TEST_CASE("without a stop in the law nothing ends at the gap") {
     const Steady motion = steady(0.1, 1.0, 0.05);
-    const auto integrator = test::spring(StopLaw::none);
+    const auto integrator = test::spring(ContactLaw::none);
     flow::Request request;
     request.state = motion.state(0.0);
     request.duration = two_pi;

@@ -1,6 +1,8 @@
 // Contact-sequence shooting: the same orbits as by stroboscopic shooting, exact derivatives, no trouble at grazing.
 
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "orbit/contact_sequence.hpp"
 #include "orbit/orbit.hpp"
 #include "relative.hpp"
@@ -13,7 +15,7 @@
 
 using namespace percuss;
 using flow::ParameterVector;
-using model::StopLaw;
+using model::ContactLaw;
 using numerics::Vector;
 using orbit::Orbit;
 using test::at;
@@ -50,7 +52,7 @@ Orbit settled_orbit(const flow::System& system, int cycles = 300) {
 }  // namespace
 
 TEST_CASE("contact-sequence shooting finds the same orbits") {
-    for (const StopLaw law : {StopLaw::kelvin_voigt, StopLaw::no_tension}) {
+    for (const ContactLaw law : {ContactLaw::kelvin_voigt, ContactLaw::no_tension}) {
         const auto integrator = membranes(law);
         for (const int which : {0, 1, 2, 5}) {
             const test::ReferenceOrbit& known = test::reference_orbits[at(which)];
@@ -90,8 +92,8 @@ TEST_CASE("derivatives of the contact-sequence equations, one and two contacts, 
         std::array<int, 3> parameters;  ///< differentiated by
     };
     std::vector<Scene> scenes;
-    for (const StopLaw law : {StopLaw::kelvin_voigt, StopLaw::no_tension}) {
-        const std::string suffix = law == StopLaw::kelvin_voigt ? ", kelvin-voigt" : ", no-tension";
+    for (const ContactLaw law : {ContactLaw::kelvin_voigt, ContactLaw::no_tension}) {
+        const std::string suffix = law == ContactLaw::kelvin_voigt ? ", kelvin-voigt" : ", no-tension";
         for (const int which : {0, 5}) {
             const test::ReferenceOrbit& known = test::reference_orbits[at(which)];
             Scene scene{std::string(known.name) + suffix, membranes(law, 1e-16), {}, {}, {}};

@@ -4,6 +4,7 @@
 #include "boundary/critical.hpp"
 #include "branch/trace.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
 #include "orbit/polish.hpp"
 #include "relative.hpp"
 
@@ -18,7 +19,7 @@ using boundary::CriticalPoint;
 using boundary::Kind;
 using branch::BoundaryPoint;
 using flow::ParameterVector;
-using model::StopLaw;
+using model::ContactLaw;
 using test::at;
 using test::membranes;
 using test::paper_defaults;
@@ -45,7 +46,7 @@ branch::Branch main_branch(const flow::Integrator& integrator, const ParameterVe
     options.from = from;
     options.to = to;
     options.size = size;
-    const flow::Family family = flow::along_frequency(base, integrator.linear_resonance(p));
+    const flow::ParameterFamily family = flow::along_frequency(base, integrator.linear_resonance(p));
     branch::Branch traced = branch::trace(family, departure, options);
     CHECK(traced.end == branch::End::range);
     return traced;
@@ -71,7 +72,7 @@ void check_gradient(const flow::Integrator& integrator, const ParameterVector& p
     std::vector<ParameterVector> directions;
     for (const int parameter : parameters) { directions.push_back(orbit::unit_direction(parameter)); }
     const auto solve = [&](const ParameterVector& there, std::span<const ParameterVector> along) {
-        const flow::Family family = flow::along_frequency(base.with(there), unit);
+        const flow::ParameterFamily family = flow::along_frequency(base.with(there), unit);
         return boundary::solve_critical(family, found.kind, found.point.motion, found.point.omega, found.contact,
                                         found.angle, size, along);
     };
@@ -114,7 +115,7 @@ void check_multiplier(const BoundaryPoint& found) {
 }  // namespace
 
 TEST_CASE("boundaries of the paper's defaults depend on the design as differences say") {
-    const auto integrator = membranes(StopLaw::kelvin_voigt, 1e-14);
+    const auto integrator = membranes(ContactLaw::kelvin_voigt, 1e-14);
     const branch::Branch branch = main_branch(*integrator, paper_defaults, 4.0, 1.2, 0.1);
     for (const BoundaryPoint& found : branch.boundaries) { check_multiplier(found); }
     const std::vector<int> design = {membrane::gap,     membrane::stiffness, membrane::damping,
@@ -141,7 +142,7 @@ TEST_CASE("boundaries of the paper's defaults depend on the design as difference
 }
 
 TEST_CASE("fold and flip against a stop that cannot pull") {
-    const auto integrator = membranes(StopLaw::no_tension, 1e-14);
+    const auto integrator = membranes(ContactLaw::no_tension, 1e-14);
     const branch::Branch branch = main_branch(*integrator, paper_defaults, 4.0, 1.2, 0.1);
     for (const BoundaryPoint& found : branch.boundaries) {
         if (found.partner < 0) { check_multiplier(found); }
@@ -153,7 +154,7 @@ TEST_CASE("fold and flip against a stop that cannot pull") {
 
 TEST_CASE("torus points, free and striking") {
     {
-        const auto integrator = membranes(StopLaw::none, 1e-14);
+        const auto integrator = membranes(ContactLaw::none, 1e-14);
         ParameterVector p = paper_defaults;
         p[membrane::voltage] = 0.232;
         p[membrane::delta_a] = 0.022;
@@ -164,7 +165,7 @@ TEST_CASE("torus points, free and striking") {
         check_multiplier(torus);
         check_gradient(*integrator, p, torus, {membrane::voltage, membrane::delta_a, membrane::layers}, 0.1, 3e-7);
     }
-    const auto integrator = membranes(StopLaw::no_tension, 1e-14);
+    const auto integrator = membranes(ContactLaw::no_tension, 1e-14);
     ParameterVector p = paper_defaults;
     p[membrane::stiffness] = 4231.0;
     p[membrane::gap] = 0.04066;
@@ -184,10 +185,10 @@ TEST_CASE("torus points, free and striking") {
 }
 
 TEST_CASE("the soft stop of the bilinear oscillator, both laws") {
-    for (const StopLaw law : {StopLaw::kelvin_voigt, StopLaw::no_tension}) {
+    for (const ContactLaw law : {ContactLaw::kelvin_voigt, ContactLaw::no_tension}) {
         const auto integrator = test::spring(law, 1e-15);
         ParameterVector p = test::soft_impact::parameters;
-        const bool published = law == StopLaw::kelvin_voigt;
+        const bool published = law == ContactLaw::kelvin_voigt;
         if (!published) { p[spring::stop_damping] = 0.5; }
         const branch::Branch branch = main_branch(*integrator, p, 2.5, 0.7, 1.0);
         std::vector<int> parameters = {spring::force, spring::gap, spring::stop_stiffness, spring::damping};
@@ -207,7 +208,7 @@ TEST_CASE("the soft stop of the bilinear oscillator, both laws") {
             const BoundaryPoint& grazing = nearest(branch, Kind::grazing, omega);
             CHECK(std::abs(grazing.point.omega - omega) < 6e-13);
             // A = d sqrt((k - w^2)^2 + c^2 w^2): dw/dA is one over its derivative by w.
-            const flow::Family family = flow::along_frequency({integrator.get(), p, nullptr}, 1.0);
+            const flow::ParameterFamily family = flow::along_frequency({integrator.get(), p, nullptr}, 1.0);
             const ParameterVector by_force = orbit::unit_direction(spring::force);
             const CriticalPoint exact = boundary::solve_critical(family, Kind::grazing, grazing.point.motion, omega,
                                                                  grazing.contact, 0.0, 1.0, {&by_force, 1});
@@ -222,7 +223,7 @@ TEST_CASE("the soft stop of the bilinear oscillator, both laws") {
 TEST_CASE("a boundary that is not there is not found") {
     const auto integrator = membranes();
     const flow::System system{integrator.get(), paper_defaults, nullptr};
-    const flow::Family family = flow::along_frequency(system, 1.7);
+    const flow::ParameterFamily family = flow::along_frequency(system, 1.7);
     const orbit::Orbit found = orbit::polish_orbit(system, test::reference_orbits[0].state, 1);
     REQUIRE(found.ok());
     const orbit::Motion motion = orbit::motion_of(system, found);

@@ -19,7 +19,7 @@ inline model::Specification changed(model::Specification spec, const Changes& ch
 
 inline design::Demand everything(const model::Specification& spec) {
     design::Demand demand;
-    const auto all = design::reported_quantities(spec.family);
+    const auto all = design::reported_quantities(*spec.type);
     demand.quantities.assign(all.begin(), all.end());
     std::erase_if(demand.quantities, [](design::Quantity q) {  // needs branches to be traced: tests of their own
         return q == design::Quantity::band_lower || q == design::Quantity::band_upper;

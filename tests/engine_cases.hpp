@@ -4,7 +4,8 @@
 
 #include "flow/flow.hpp"
 #include "kernels/kernels.hpp"
-#include "model/parameters.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "reference_values.hpp"
 
 #include <algorithm>
@@ -25,17 +26,17 @@ inline constexpr double two_pi = 2.0 * pi;
 
 inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-inline std::unique_ptr<flow::Integrator> membranes(model::StopLaw law = model::StopLaw::kelvin_voigt,
+inline std::unique_ptr<flow::Integrator> membranes(model::ContactLaw law = model::ContactLaw::kelvin_voigt,
                                                    double tolerance = 1e-13, bool viscous = true) {
     kernels::IntegratorOptions options;
     options.tolerance = tolerance;
-    return kernels::make_integrator(model::ActuatorKind::dielectric_elastomer, law, viscous, options);
+    return kernels::make_integrator(viscous ? model::membrane::viscous : model::membrane::elastic, law, options);
 }
-inline std::unique_ptr<flow::Integrator> spring(model::StopLaw law = model::StopLaw::kelvin_voigt,
+inline std::unique_ptr<flow::Integrator> spring(model::ContactLaw law = model::ContactLaw::kelvin_voigt,
                                                 double tolerance = 1e-13) {
     kernels::IntegratorOptions options;
     options.tolerance = tolerance;
-    return kernels::make_integrator(model::ActuatorKind::spring_mass, law, true, options);
+    return kernels::make_integrator(model::spring::scene, law, options);
 }
 
 inline flow::ParameterVector with(flow::ParameterVector p, int index, double value) {
@@ -119,23 +120,32 @@ std::vector<Derivative> ridders_many(Function&& f, std::size_t components, doubl
     return found;
 }
 
+/// An observable by name; call it with the observables of a run.
 struct NamedObservable {
     std::string_view name;
-    flow::Sensitive flow::Observables::*member;
+    const flow::Sensitive& (*member)(const flow::Observables&);
 };
+template <flow::Sensitive flow::Observables::*Member>
+const flow::Sensitive& one_of(const flow::Observables& all) {
+    return all.*Member;
+}
+template <std::size_t K>
+const flow::Sensitive& peak_of(const flow::Observables& all) {
+    return all.peak[K];
+}
 inline constexpr std::array<NamedObservable, 12> observables = {{
-    {"x_max", &flow::Observables::x_max},
-    {"x_min", &flow::Observables::x_min},
-    {"peak_force", &flow::Observables::peak_force},
-    {"impact_velocity", &flow::Observables::impact_velocity},
-    {"contact_time", &flow::Observables::contact_time},
-    {"impulse", &flow::Observables::impulse},
-    {"stop_work", &flow::Observables::stop_work},
-    {"peak_acceleration", &flow::Observables::peak_acceleration},
-    {"peak_field", &flow::Observables::peak_field},
-    {"peak_current", &flow::Observables::peak_current},
-    {"drive_work", &flow::Observables::drive_work},
-    {"dissipation", &flow::Observables::dissipation},
+    {"x_max", one_of<&flow::Observables::x_max>},
+    {"x_min", one_of<&flow::Observables::x_min>},
+    {"peak_force", one_of<&flow::Observables::peak_force>},
+    {"impact_velocity", one_of<&flow::Observables::impact_velocity>},
+    {"contact_time", one_of<&flow::Observables::contact_time>},
+    {"impulse", one_of<&flow::Observables::impulse>},
+    {"stop_work", one_of<&flow::Observables::stop_work>},
+    {"peak_acceleration", one_of<&flow::Observables::peak_acceleration>},
+    {"peak_field", peak_of<model::membrane::field>},
+    {"peak_current", peak_of<model::membrane::current>},
+    {"drive_work", one_of<&flow::Observables::drive_work>},
+    {"dissipation", one_of<&flow::Observables::dissipation>},
 }};
 
 }  // namespace percuss::test

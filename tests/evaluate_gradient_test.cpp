@@ -3,6 +3,8 @@
 
 #include "design_cases.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 
 #include <doctest/doctest.h>
 
@@ -92,7 +94,7 @@ void check_design(const design::Evaluator& evaluator, const Specification& spec,
 
 std::vector<Key> nonzero_keys(const Specification& spec) {
     std::vector<Key> keys;
-    for (const Key key : model::keys_of(spec.family)) {
+    for (const Key key : spec.type->keys) {
         if (spec.has(key) && spec.value(key) != 0.0) { keys.push_back(key); }
     }
     return keys;
@@ -112,11 +114,13 @@ TEST_CASE("ten random actuators, by every key, at the operating point below thei
         Specification spec = problem.actuator;
         spec.set(Key::stop_gap, random.uniform(0.3e-3, 1.0e-3));
         spec.set(Key::stop_stiffness, random.log_uniform(15e3, 150e3));
-        spec.set(Key::drive_voltage, random.uniform(2000.0, 3600.0));
-        spec.set(Key::prestretch, random.uniform(1.05, 1.2));
-        spec.set(Key::layers, random.uniform(1.0, 3.5));
+        spec.set(percuss::model::membrane::key::drive_voltage, random.uniform(2000.0, 3600.0));
+        spec.set(percuss::model::membrane::key::prestretch, random.uniform(1.05, 1.2));
+        spec.set(percuss::model::membrane::key::layers, random.uniform(1.0, 3.5));
         for (const Key key :
-             {Key::moving_mass, Key::membrane_thickness, Key::rod_length, Key::inner_radius, Key::outer_radius}) {
+             {percuss::model::membrane::key::moving_mass, percuss::model::membrane::key::membrane_thickness,
+              percuss::model::membrane::key::rod_length, percuss::model::membrane::key::inner_radius,
+              percuss::model::membrane::key::outer_radius}) {
             spec.set(key, spec.value(key) * random.uniform(0.85, 1.15));
         }
         if (evaluator.evaluate(spec, everything(spec)).status != EvaluationStatus::ok) { continue; }
@@ -131,29 +135,32 @@ TEST_CASE("ten random actuators, by every key, at the operating point below thei
 
 TEST_CASE("the nondimensional problem, by every key") {
     design::Problem problem = test::shipped_problem("wu2022-nondimensional").design;
-    problem.actuator.set(Key::nd_layers, 1.2);  // one is the least allowed: no differences there
+    problem.actuator.set(percuss::model::membrane::key::nd_layers,
+                         1.2);  // one is the least allowed: no differences there
     Worst worst;
-    for (const model::StopLaw law : {model::StopLaw::kelvin_voigt, model::StopLaw::no_tension}) {
+    for (const model::ContactLaw law : {model::ContactLaw::kelvin_voigt, model::ContactLaw::no_tension}) {
         problem.actuator.law = law;
         const design::Evaluator evaluator(problem);
         check_design(evaluator, problem.actuator, nonzero_keys(problem.actuator), 1e-6, worst);
         Specification other = problem.actuator;
-        other.set(Key::nd_alpha_a, 2.6);
-        other.set(Key::nd_alpha_b, 2.5);
-        other.set(Key::nd_layers, 3.0);
-        other.set(Key::nd_voltage, 0.5);
-        other.set(Key::nd_damping, 60.0);  // the largest force is that of entry
+        other.set(percuss::model::membrane::key::nd_alpha_a, 2.6);
+        other.set(percuss::model::membrane::key::nd_alpha_b, 2.5);
+        other.set(percuss::model::membrane::key::nd_layers, 3.0);
+        other.set(percuss::model::membrane::key::nd_voltage, 0.5);
+        other.set(percuss::model::membrane::key::nd_damping, 60.0);  // the largest force is that of entry
         check_design(evaluator, other, nonzero_keys(other), 1e-6, worst);
     }
     // Without Maxwell branches.
     Specification elastic = problem.actuator;
-    elastic.law = model::StopLaw::kelvin_voigt;
-    elastic.set(Key::nd_mu_ratio, 0.0);
-    elastic.set(Key::nd_delta_a, 0.5);
+    elastic.law = model::ContactLaw::kelvin_voigt;
+    elastic.set(percuss::model::membrane::key::nd_mu_ratio, 0.0);
+    elastic.set(percuss::model::membrane::key::nd_delta_a, 0.5);
     problem.actuator = elastic;
     const design::Evaluator evaluator(problem);
     std::vector<Key> keys = nonzero_keys(elastic);
-    std::erase_if(keys, [](Key key) { return key == Key::nd_alpha_b || key == Key::nd_delta_b; });
+    std::erase_if(keys, [](Key key) {
+        return key == percuss::model::membrane::key::nd_alpha_b || key == percuss::model::membrane::key::nd_delta_b;
+    });
     check_design(evaluator, elastic, keys, 1e-6, worst);
     MESSAGE("largest relative error of a gradient ", worst.error, ": ", worst.where);
 }
@@ -162,14 +169,14 @@ TEST_CASE("a spring and mass, and given frequencies") {
     Worst worst;
     design::Problem soft = test::shipped_problem("soft-impact").design;
     soft.actuator.set(Key::stop_damping, 0.3);
-    soft.actuator.set(Key::sm_damping, 0.1);
-    soft.actuator.set(Key::sm_cubic, 0.05);
-    soft.actuator.set(Key::sm_force, 0.3);
+    soft.actuator.set(percuss::model::spring::key::damping, 0.1);
+    soft.actuator.set(percuss::model::spring::key::cubic, 0.05);
+    soft.actuator.set(percuss::model::spring::key::force, 0.3);
     check_design(design::Evaluator(soft), soft.actuator, nonzero_keys(soft.actuator), 1e-6, worst);
 
     design::Problem actuator = test::shipped_problem("wu2022-actuator").design;
     actuator.actuator.set(Key::drive_frequency, 57.0);
-    actuator.actuator.set(Key::layers, 1.1);
+    actuator.actuator.set(percuss::model::membrane::key::layers, 1.1);
     check_design(design::Evaluator(actuator), actuator.actuator, nonzero_keys(actuator.actuator), 1e-6, worst);
     MESSAGE("largest relative error of a gradient ", worst.error, ": ", worst.where);
 }
@@ -179,16 +186,19 @@ TEST_CASE("an edge that is a loss of stability, not a grazing") {
     // the design and takes the operating point along.
     design::Problem problem = test::shipped_problem("wu2022-nondimensional").design;
     Specification& spec = problem.actuator;
-    spec.set(Key::nd_voltage, 0.232);
-    spec.set(Key::nd_delta_a, 0.022);
-    spec.set(Key::nd_delta_b, 390.0);
-    spec.set(Key::nd_gap, 0.3);
-    spec.set(Key::nd_layers, 1.01);
+    spec.set(percuss::model::membrane::key::nd_voltage, 0.232);
+    spec.set(percuss::model::membrane::key::nd_delta_a, 0.022);
+    spec.set(percuss::model::membrane::key::nd_delta_b, 390.0);
+    spec.set(percuss::model::membrane::key::nd_gap, 0.3);
+    spec.set(percuss::model::membrane::key::nd_layers, 1.01);
     const design::Evaluator evaluator(problem);
     const Evaluation base = evaluator.evaluate(spec, everything(spec));
     REQUIRE(base.operating_point.edge_kind == design::EdgeKind::torus);
     Worst worst;
-    check_design(evaluator, spec, {Key::nd_voltage, Key::nd_delta_a, Key::nd_stiffness, Key::nd_gap, Key::nd_layers},
+    check_design(evaluator, spec,
+                 {percuss::model::membrane::key::nd_voltage, percuss::model::membrane::key::nd_delta_a,
+                  percuss::model::membrane::key::nd_stiffness, percuss::model::membrane::key::nd_gap,
+                  percuss::model::membrane::key::nd_layers},
                  3e-6, worst);
     MESSAGE("largest relative error of a gradient ", worst.error, ": ", worst.where);
 }

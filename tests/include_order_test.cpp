@@ -188,7 +188,7 @@ TEST_CASE("a tree that keeps the rules has no violations") {
     tree.write("flow/cvodes.cpp",
                "#include <cvodes/cvodes.h>\n  #  include \"model/scene.hpp\"\n// #include \"cli/a.hpp\"\n");
     tree.write("optimise/ipopt.cpp", "#include <IpTNLP.hpp>\n#include <sys/types.h>\n");
-    tree.write("cli/main.cpp", "#include \"study/evaluate.hpp\"\n");
+    tree.write("cli/main.cpp", "#include \"verbs/evaluate/evaluate.hpp\"\n");
     tree.write("cli/notes.txt", "#include \"nowhere.hpp\"\n");
     const ScanResult result = scan_tree(tree.root());
     CHECK(result.files == 5);
@@ -202,6 +202,10 @@ TEST_CASE("a broken rule is found, with file and line") {
           Lines{"flow/flow.hpp:2: flow may not include \"orbit/orbit.hpp\": orbit comes later"});
     CHECK(violations_of("model/deep/a.cpp", "#include \"cli/b.hpp\"\n") ==
           Lines{"model/deep/a.cpp:1: model may not include \"cli/b.hpp\": cli comes later"});
+    CHECK(violations_of("verbs/orbit/a.cpp", "#include \"verbs/branch/b.hpp\"\n#include \"cli/b.hpp\"\n") ==
+          Lines{"verbs/orbit/a.cpp:2: verbs may not include \"cli/b.hpp\": cli comes later"});
+    CHECK(violations_of("problem/a.cpp", "#include \"results/json.hpp\"\n") ==
+          Lines{"problem/a.cpp:1: problem may not include \"results/json.hpp\": results comes later"});
     CHECK(violations_of("orbit/a.cpp", "#include <flow/flow.hpp>\n") ==
           Lines{"orbit/a.cpp:1: own header <flow/flow.hpp> needs quotes"});
     CHECK(violations_of("orbit/a.cpp", "#include \"orbit.hpp\"\n") ==
@@ -227,10 +231,10 @@ TEST_CASE("no third-party header may stand in one of our headers") {
     for (const std::string& header : third_party) {
         CAPTURE(header);
         const std::string line = "#include <" + header + ">\n";
-        CHECK(violations_of("io/a.cpp", line).empty());
-        const std::vector<std::string> found = violations_of("io/a.hpp", line);
+        CHECK(violations_of("results/a.cpp", line).empty());
+        const std::vector<std::string> found = violations_of("results/a.hpp", line);
         REQUIRE(found.size() == 1);
-        CHECK(found[0] == "io/a.hpp:1: third-party <" + header + "> may be included only by a .cpp file");
-        CHECK(violations_of("io/a.ipp", line).size() == 1);
+        CHECK(found[0] == "results/a.hpp:1: third-party <" + header + "> may be included only by a .cpp file");
+        CHECK(violations_of("results/a.ipp", line).size() == 1);
     }
 }

@@ -3,10 +3,12 @@
 
 #include "design/families.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
-#include "study/branch.hpp"
-#include "study/locus.hpp"
+#include "verbs/branch/branch.hpp"
+#include "verbs/locus/locus.hpp"
 
 #include <doctest/doctest.h>
 
@@ -22,15 +24,15 @@ using test::relative;
 
 namespace {
 
-study::LocusStudyResult follow(const study::StudyProblem& problem, Kind kind, Key along, double from, double to,
-                               int steps = 25) {
-    study::LocusStudy study;
+verbs::LocusResult follow(const verbs::StudyProblem& problem, Kind kind, Key along, double from, double to,
+                          int steps = 25) {
+    verbs::LocusOptions study;
     study.kind = kind;
     study.along = along;
     study.from = from;
     study.to = to;
     study.steps = steps;
-    return study::run_locus(problem, study, {}, {});
+    return verbs::run_locus(problem, study, {}, {});
 }
 
 /// The point of a curve at a value of the key nearest to a frequency.
@@ -45,12 +47,12 @@ const LocusPoint& at_value(const Locus& curve, double value, double omega) {
 }
 
 /// The boundary of this kind nearest to omega on the main branch.
-double on_main_branch(study::StudyProblem problem, Kind kind, Key key, double value, double omega) {
+double on_main_branch(verbs::StudyProblem problem, Kind kind, Key key, double value, double omega) {
     problem.design.actuator.set(key, value);
-    study::BranchStudy study;
+    verbs::BranchOptions study;
     study.from = 2.0 * omega;
     study.to = 0.6 * omega;
-    const auto map = study::run_branch(problem, study, {}, {});
+    const auto map = verbs::run_branch(problem, study, {}, {});
     double best = 1e300;
     for (const auto& found : map.branches.at(0).boundaries) {
         if (found.kind == kind && std::abs(found.point.omega - omega) < std::abs(best - omega)) {
@@ -65,7 +67,7 @@ double on_main_branch(study::StudyProblem problem, Kind kind, Key key, double va
 TEST_CASE("the published fold curve of the soft stop") {
     const auto problem = test::shipped_problem("soft-impact");
     const auto result = follow(problem, Kind::fold, Key::sm_force, test::soft_impact::parameters[3], 0.5, 35);
-    CHECK(result.ending == study::Ending::verified);
+    CHECK(result.ending == verbs::Ending::verified);
     REQUIRE(result.curves.size() == 2);  // the fold beside grazing, and the one far up
     const Locus& upper = result.curves[1];
     CHECK(upper.turns.empty());
@@ -79,7 +81,7 @@ TEST_CASE("the published fold curve of the soft stop") {
         CHECK(curve.points.back().value == relative(0.5, 1e-12));
     }
     // The same in the other direction.
-    const auto back = follow(problem, Kind::fold, Key::sm_force, 0.5, 0.16, 17);
+    const auto back = follow(problem, Kind::fold, percuss::model::spring::key::force, 0.5, 0.16, 17);
     const Locus& again = back.curves.back();
     CHECK(std::abs(at_value(again, 0.2, 1.6).omega - 1.599768196) < 6e-10);
 }
@@ -87,7 +89,7 @@ TEST_CASE("the published fold curve of the soft stop") {
 TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from either side") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
     const auto down = follow(problem, Kind::fold, Key::nd_voltage, 0.5, 0.15);
-    CHECK(down.ending == study::Ending::verified);
+    CHECK(down.ending == verbs::Ending::verified);
     REQUIRE(down.curves.size() == 1);  // the second fold is the end of the first one's curve
     const Locus& curve = down.curves[0];
     CHECK(curve.end == branch::End::range);
@@ -109,10 +111,12 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
     for (const double value : {0.3, 0.22}) {
         CAPTURE(value);
         const double omega = at_value(curve, value, 2.5).omega;
-        CHECK(omega == relative(on_main_branch(problem, Kind::fold, Key::nd_voltage, value, omega), 1e-10));
+        CHECK(omega ==
+              relative(on_main_branch(problem, Kind::fold, percuss::model::membrane::key::nd_voltage, value, omega),
+                       1e-10));
     }
 
-    const auto up = follow(problem, Kind::fold, Key::nd_voltage, 0.201, 0.15);
+    const auto up = follow(problem, Kind::fold, percuss::model::membrane::key::nd_voltage, 0.201, 0.15);
     REQUIRE(up.curves.size() == 1);
     REQUIRE(up.curves[0].turns.size() == 1);
     CHECK(up.curves[0].turns[0].cusp);
@@ -120,7 +124,7 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
     CHECK(up.curves[0].turns[0].omega == relative(cusp.omega, 1e-7));
     // Below the cusp nothing folds.
     const auto none = follow(problem, Kind::fold, Key::nd_voltage, 0.19, 0.15);
-    CHECK(none.ending == study::Ending::infeasible);
+    CHECK(none.ending == verbs::Ending::infeasible);
     CHECK(none.curves.empty());
     CHECK_FALSE(none.reason.empty());
 }
@@ -128,29 +132,34 @@ TEST_CASE("both folds of the paper's actuator are one curve with a cusp, from ei
 TEST_CASE("grazing and flip curves lie where the branches have them") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
     const auto grazing = follow(problem, Kind::grazing, Key::nd_gap, 0.1, 0.2, 10);
-    CHECK(grazing.ending == study::Ending::verified);
+    CHECK(grazing.ending == verbs::Ending::verified);
     REQUIRE(!grazing.curves.empty());
     for (const auto& gap : {0.12, 0.15}) {
         const double omega = at_value(grazing.curves[0], gap, 1.9).omega;
-        CHECK(omega == relative(on_main_branch(problem, Kind::grazing, Key::nd_gap, gap, omega), 1e-10));
+        CHECK(
+            omega ==
+            relative(on_main_branch(problem, Kind::grazing, percuss::model::membrane::key::nd_gap, gap, omega), 1e-10));
         CHECK(at_value(grazing.curves[0], gap, 1.9).peak_force == 0.0);
     }
     // Upper and lower grazing meet where the stroke at resonance is the gap: a turn, and no cusp of folds.
     for (const auto& known : test::edge_reference::vs_phi_pp) {
-        const auto voltage = follow(problem, Kind::grazing, Key::nd_voltage, 0.4, known[0], 4);
+        const auto voltage =
+            follow(problem, Kind::grazing, percuss::model::membrane::key::nd_voltage, 0.4, known[0], 4);
         CHECK(std::abs(at_value(voltage.curves.at(0), known[0], known[1]).omega - known[1]) < 1e-6);
     }
-    const auto meeting = follow(problem, Kind::grazing, Key::nd_voltage, 0.4, 0.1, 10);
+    const auto meeting = follow(problem, Kind::grazing, percuss::model::membrane::key::nd_voltage, 0.4, 0.1, 10);
     REQUIRE(meeting.curves.size() == 1);
     REQUIRE(meeting.curves[0].turns.size() == 1);
     CHECK_FALSE(meeting.curves[0].turns[0].cusp);
     CHECK(meeting.curves[0].turns[0].value > 0.19);
     CHECK(meeting.curves[0].turns[0].value < 0.2);
 
-    const auto flip = follow(problem, Kind::flip, Key::nd_stiffness, 2500.0, 5000.0, 10);
+    const auto flip = follow(problem, Kind::flip, percuss::model::membrane::key::nd_stiffness, 2500.0, 5000.0, 10);
     REQUIRE(!flip.curves.empty());
     const double omega = at_value(flip.curves[0], 4000.0, 1.75).omega;
-    CHECK(omega == relative(on_main_branch(problem, Kind::flip, Key::nd_stiffness, 4000.0, omega), 1e-10));
+    CHECK(omega ==
+          relative(on_main_branch(problem, Kind::flip, percuss::model::membrane::key::nd_stiffness, 4000.0, omega),
+                   1e-10));
 }
 
 TEST_CASE("a torus curve") {
@@ -161,10 +170,12 @@ TEST_CASE("a torus curve") {
     spec.set(Key::nd_delta_a, 0.022);
     spec.set(Key::nd_delta_b, 390.0);
     const auto torus = follow(problem, Kind::torus, Key::nd_delta_a, 0.022, 0.024, 10);
-    CHECK(torus.ending == study::Ending::verified);
+    CHECK(torus.ending == verbs::Ending::verified);
     REQUIRE(!torus.curves.empty());
     const LocusPoint& there = at_value(torus.curves[0], 0.023, 1.79);
-    CHECK(there.omega == relative(on_main_branch(problem, Kind::torus, Key::nd_delta_a, 0.023, there.omega), 1e-9));
+    CHECK(there.omega ==
+          relative(on_main_branch(problem, Kind::torus, percuss::model::membrane::key::nd_delta_a, 0.023, there.omega),
+                   1e-9));
     CHECK(there.angle != 0.0);
 }
 
@@ -174,15 +185,17 @@ TEST_CASE("families move their parameters as their directions say") {
     const auto integrator = test::membranes();
     const flow::System system{integrator.get(), model::scale(spec).parameters, nullptr};
     CHECK(design::frequency_family(system).at(1.7).omega() == 1.7);
-    for (const Key key : {Key::moving_mass, Key::stop_gap, Key::drive_voltage, Key::prestretch, Key::outer_radius}) {
+    for (const Key key :
+         {percuss::model::membrane::key::moving_mass, Key::stop_gap, percuss::model::membrane::key::drive_voltage,
+          percuss::model::membrane::key::prestretch, percuss::model::membrane::key::outer_radius}) {
         CAPTURE(model::key_info(key).name);
         const double value = spec.value(key);
-        const flow::Family alone = design::key_family(system, spec, key, value);
-        const flow::Family both = design::frequency_and_key_family(system, spec, key, value);
+        const flow::ParameterFamily alone = design::key_family(system, spec, key, value);
+        const flow::ParameterFamily both = design::frequency_and_key_family(system, spec, key, value);
         CHECK(alone.dimension() == 1);
         CHECK(both.dimension() == 2);
         CHECK(both.units[1] == value);
-        const auto check = [&](const flow::Family& family, std::vector<double> p) {
+        const auto check = [&](const flow::ParameterFamily& family, std::vector<double> p) {
             const auto directions = family.directions(p);
             REQUIRE(directions.size() == p.size());
             for (std::size_t i = 0; i < p.size(); ++i) {
@@ -205,35 +218,35 @@ TEST_CASE("families move their parameters as their directions say") {
         check(both, {1.8, 1.1 * value});
         CHECK(both.at(std::vector<double>{1.8, value}).omega() == 1.8);
     }
-    CHECK_THROWS_WITH_AS(design::key_family(system, spec, Key::nd_gap, 1.0), doctest::Contains("nondimensional.g"),
-                         std::invalid_argument);
-    CHECK(design::is_drive_frequency(Key::sm_omega));
+    CHECK_THROWS_WITH_AS(design::key_family(system, spec, percuss::model::membrane::key::nd_gap, 1.0),
+                         doctest::Contains("nondimensional.g"), std::invalid_argument);
+    CHECK(design::is_drive_frequency(percuss::model::spring::key::omega));
     CHECK_FALSE(design::is_drive_frequency(Key::stop_gap));
 }
 
 TEST_CASE("misuse and early ends") {
     const auto problem = test::shipped_problem("wu2022-nondimensional");
-    const auto run = [&](const study::LocusStudy& study) { return study::run_locus(problem, study, {}, {}); };
-    study::LocusStudy study;
+    const auto run = [&](const verbs::LocusOptions& study) { return verbs::run_locus(problem, study, {}, {}); };
+    verbs::LocusOptions study;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("locus.along"), std::invalid_argument);
-    study.along = Key::nd_voltage;
+    study.along = percuss::model::membrane::key::nd_voltage;
     study.from = 0.3;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("locus.to"), std::invalid_argument);
     study.to = 0.3;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("empty"), std::invalid_argument);
-    study.along = Key::nd_omega;
+    study.along = percuss::model::membrane::key::nd_omega;
     study.to = 0.4;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("drive frequency"), std::invalid_argument);
-    study.along = Key::sm_force;
+    study.along = percuss::model::spring::key::force;
     CHECK_THROWS_WITH_AS(run(study), doctest::Contains("spring-mass.force"), std::invalid_argument);
-    study.along = Key::nd_voltage;
+    study.along = percuss::model::membrane::key::nd_voltage;
     study.max_points = 5;
     const auto few = run(study);
-    CHECK(few.ending == study::Ending::budget);
+    CHECK(few.ending == verbs::Ending::budget);
     CHECK(few.curves.at(0).points.size() <= 6);
     int asked = 0;
-    const auto stopped = study::run_locus(problem, study, {}, [&] { return ++asked > 3; });
-    CHECK(stopped.ending == study::Ending::interrupted);
-    CHECK(study::LocusStudyResult{}.ending == study::Ending::not_run);
+    const auto stopped = verbs::run_locus(problem, study, {}, [&] { return ++asked > 3; });
+    CHECK(stopped.ending == verbs::Ending::interrupted);
+    CHECK(verbs::LocusResult{}.ending == verbs::Ending::not_run);
     CHECK(Locus{}.end == branch::End::not_run);
 }

@@ -2,7 +2,7 @@
 /// \file
 /// A table that a study writes, kept in memory.
 
-#include "study/study.hpp"
+#include "verbs/study.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace percuss::test {
 
-class MemoryTable : public study::RowSink {
+class MemoryTable : public results::RowSink {
 public:
-    void header(std::span<const study::Column> columns) override { columns_.assign(columns.begin(), columns.end()); }
+    void header(std::span<const results::Column> columns) override { columns_.assign(columns.begin(), columns.end()); }
     void row(std::span<const double> values) override { rows_.emplace_back(values.begin(), values.end()); }
 
     [[nodiscard]] const std::vector<std::vector<double>>& rows() const { return rows_; }
@@ -31,7 +31,7 @@ private:
         }
         throw std::out_of_range("no column " + name);
     }
-    std::vector<study::Column> columns_;
+    std::vector<results::Column> columns_;
     std::vector<std::vector<double>> rows_;
 };
 

@@ -1,6 +1,8 @@
 // Periodic motions as zeros of smooth equations, in all forms, and the walker along curves that follows them.
 
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "numerics/arclength.hpp"
 #include "orbit/motion.hpp"
 #include "orbit/polish.hpp"
@@ -15,7 +17,7 @@
 
 using namespace percuss;
 using flow::ParameterVector;
-using model::StopLaw;
+using model::ContactLaw;
 using numerics::Matrix;
 using numerics::Vector;
 using orbit::Form;
@@ -42,12 +44,12 @@ Motion solved(const flow::System& system, const Motion& guess) {
     return *motion;
 }
 
-Scene reference_scene(int which, Form form, StopLaw law, bool mirrored = false) {
+Scene reference_scene(int which, Form form, ContactLaw law, bool mirrored = false) {
     const test::ReferenceOrbit& known = test::reference_orbits[at(which)];
     Scene scene;
     scene.integrator = membranes(law, 1e-16);
     scene.p = test::with(paper_defaults, model::membrane::omega, known.omega);
-    scene.name = std::string(known.name) + (law == StopLaw::kelvin_voigt ? ", kelvin-voigt" : ", no-tension");
+    scene.name = std::string(known.name) + (law == ContactLaw::kelvin_voigt ? ", kelvin-voigt" : ", no-tension");
     const flow::System system = scene.system();
     const orbit::Orbit found = orbit::polish_orbit(system, known.state, known.period);
     REQUIRE(found.ok());
@@ -71,11 +73,11 @@ Scene reference_scene(int which, Form form, StopLaw law, bool mirrored = false) 
     return scene;
 }
 
-Scene spring_scene(StopLaw law) {
+Scene spring_scene(ContactLaw law) {
     Scene scene;
     scene.integrator = test::spring(law, 1e-16);
     scene.p = {0.1, 1.0, 0.3, 0.5, 0.4, 200.0, 1.5, 1.1};
-    scene.name = law == StopLaw::kelvin_voigt ? "spring, kelvin-voigt" : "spring, no-tension";
+    scene.name = law == ContactLaw::kelvin_voigt ? "spring, kelvin-voigt" : "spring, no-tension";
     const flow::System system = scene.system();
     const auto state = orbit::settle(system, system.integrator->rest_state(scene.p), 300);
     REQUIRE(state.has_value());
@@ -88,14 +90,14 @@ Scene spring_scene(StopLaw law) {
 
 std::vector<Scene> all_scenes() {
     std::vector<Scene> scenes;
-    for (const StopLaw law : {StopLaw::kelvin_voigt, StopLaw::no_tension}) {
+    for (const ContactLaw law : {ContactLaw::kelvin_voigt, ContactLaw::no_tension}) {
         scenes.push_back(reference_scene(1, Form::sequence, law));
         scenes.push_back(reference_scene(5, Form::sequence, law));
         scenes.push_back(reference_scene(1, Form::strobed, law));
         scenes.push_back(spring_scene(law));
     }
-    scenes.push_back(reference_scene(3, Form::free, StopLaw::kelvin_voigt));
-    scenes.push_back(reference_scene(4, Form::free, StopLaw::kelvin_voigt, true));
+    scenes.push_back(reference_scene(3, Form::free, ContactLaw::kelvin_voigt));
+    scenes.push_back(reference_scene(4, Form::free, ContactLaw::kelvin_voigt, true));
     return scenes;
 }
 
@@ -222,14 +224,14 @@ TEST_CASE("solved again from nearby, every form comes back") {
         CHECK(back.mirrored == scene.motion.mirrored);
     }
     // And nowhere else: a sequence whose contact lasts longer than the period is no motion.
-    Scene scene = spring_scene(StopLaw::kelvin_voigt);
+    Scene scene = spring_scene(ContactLaw::kelvin_voigt);
     scene.motion.sequence.contacts[0].duration = 7.0;
     CHECK_FALSE(orbit::shoot(scene.system(), scene.motion, {}).has_value());
     CHECK_FALSE(orbit::solve(scene.system(), scene.motion).has_value());
 }
 
 TEST_CASE("a motion is strobed in its longest flight, whichever contact comes first") {
-    const Scene scene = reference_scene(5, Form::sequence, StopLaw::kelvin_voigt);
+    const Scene scene = reference_scene(5, Form::sequence, ContactLaw::kelvin_voigt);
     const flow::System system = scene.system();
     const auto first = orbit::strobe(system, scene.motion);
     Motion rotated = scene.motion;

@@ -212,13 +212,13 @@ TEST_CASE("the budget is for everything together, and no point is evaluated twic
     for (std::size_t k = 2; k < seen.size(); ++k) CHECK(seen[k] != seen[k - 2]);  // twice: value, then gradient
 }
 
-TEST_CASE("a request to stop ends the search with the best so far") {
+TEST_CASE("a request to cancel ends the search with the best so far") {
     FunctionNlp nlp = waves_with_holes();
     MultiStartOptions options;
-    options.solver.stop = [&] { return nlp.calls >= 38; };
+    options.solver.cancelled = [&] { return nlp.calls >= 38; };
     const MultiStartResult result = multi_start(nlp, options);
     CHECK(result.best.status == Status::budget);
-    CHECK(result.best.message == "stop requested");
+    CHECK(result.best.message == "cancelled");
     CHECK(result.best.feasible);
     CHECK(nlp.calls == 38);
     CHECK(result.certificate.certified(1e-6));  // the first solve was through, but not the search

@@ -2,10 +2,11 @@
 
 #include "design/evaluate.hpp"
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
 #include "relative.hpp"
 #include "shipped_problem.hpp"
-#include "study/design_nlp.hpp"
-#include "study/optimise.hpp"
+#include "verbs/optimise/design_nlp.hpp"
+#include "verbs/optimise/optimise.hpp"
 
 #include <doctest/doctest.h>
 
@@ -22,14 +23,14 @@ using design::Limit;
 using design::Quantity;
 using model::Key;
 using model::Specification;
-using study::OptimiseStudyResult;
+using verbs::OptimiseStudyResult;
 
 namespace {
 
 /// The optimisation, run once for all test cases.
 struct Solved {
-    study::StudyProblem problem = test::shipped_problem("crawler");
-    OptimiseStudyResult result = study::run_optimise(problem, nullptr, {}, {});
+    verbs::StudyProblem problem = test::shipped_problem("crawler");
+    OptimiseStudyResult result = verbs::run_optimise(problem, nullptr, {}, {});
 };
 const Solved& solved() {
     static const Solved once;
@@ -65,22 +66,22 @@ TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
     INFO(r.reason);
     MESSAGE("peak force ", r.best.value(Quantity::peak_force), " N, KKT residual ", r.kkt_residual, ", ", r.evaluations,
             " evaluations, ", r.seconds, " s");
-    CHECK(r.status == "optimal");
-    CHECK(r.ending == study::Ending::verified);
+    CHECK(r.status == verbs::OptimiseStatus::optimal);
+    CHECK(r.ending == verbs::Ending::verified);
     CHECK(r.best.status == EvaluationStatus::ok);
     CHECK(r.best.value(Quantity::peak_force) > 3.37);
-    CHECK(value_of(r.design, Key::layers) == 3.0);
+    CHECK(value_of(r.design, percuss::model::membrane::key::layers) == 3.0);
     CHECK(r.kkt_residual < 1e-6);
     CHECK(r.objective_error < 1e-9 * r.best.value(Quantity::peak_force));
     REQUIRE(r.per_layers.size() == 4);
     double best = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
-        const study::IntegerCaseReport& report = r.per_layers[i];
+        const verbs::IntegerCaseReport& report = r.per_layers[i];
         CAPTURE(report.layers);
         CAPTURE(report.reason);
         CHECK(report.layers == static_cast<double>(i + 1));
         if (i < 3) {
-            CHECK(report.status == "optimal");
+            CHECK(report.status == verbs::OptimiseStatus::optimal);
             CHECK(report.kkt_residual < 1e-6);
             CHECK(report.objective > 0.0);
             best = std::max(best, report.objective);
@@ -88,8 +89,8 @@ TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
     }
     CHECK(best == test::relative(r.best.value(Quantity::peak_force), 1e-12));
     // The reason names what stands in the way.
-    const study::IntegerCaseReport& four = r.per_layers[3];
-    CHECK(four.status == "infeasible");
+    const verbs::IntegerCaseReport& four = r.per_layers[3];
+    CHECK(four.status == verbs::OptimiseStatus::infeasible);
     bool names_a_limit = false;
     for (const Limit& limit : solved().problem.design.limits) {
         names_a_limit = names_a_limit || four.reason.find(limit.text) != std::string::npos;
@@ -108,7 +109,7 @@ TEST_CASE("three layers win with more than 3.37 N, four are infeasible") {
 
 TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions, looked at from outside") {
     const Solved& s = solved();
-    REQUIRE(s.result.status == "optimal");
+    REQUIRE(s.result.status == verbs::OptimiseStatus::optimal);
     const design::Problem& problem = s.problem.design;
     const design::Evaluator evaluator(problem);
     const Specification spec = specification(problem, s.result.design);
@@ -117,7 +118,7 @@ TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions,
         if (!v.integer) { keys.push_back(v.key); }
     }
     design::Demand demand;
-    demand.quantities = study::wanted_quantities(problem);
+    demand.quantities = verbs::wanted_quantities(problem);
     demand.gradients = keys;
     const Evaluation e = evaluator.evaluate(spec, demand);
     REQUIRE(e.status == EvaluationStatus::ok);
@@ -134,7 +135,7 @@ TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions,
         double balance = x * gradient(Quantity::peak_force, j);
         double size = std::abs(balance);
         for (std::size_t i = 0; i < problem.limits.size(); ++i) {
-            const study::LimitReport& report = s.result.limits[i];
+            const verbs::LimitReport& report = s.result.limits[i];
             const double charge =
                 (report.upper ? 1.0 : -1.0) * report.multiplier * x * gradient(problem.limits[i].quantity, j);
             balance -= charge;
@@ -144,7 +145,7 @@ TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions,
     }
     REQUIRE(s.result.limits.size() == problem.limits.size());  // no bound of a variable is active
     for (std::size_t i = 0; i < problem.limits.size(); ++i) {
-        const study::LimitReport& report = s.result.limits[i];
+        const verbs::LimitReport& report = s.result.limits[i];
         CAPTURE(report.text);
         CHECK(report.value == test::relative(e.value(problem.limits[i].quantity), 1e-9));
         CHECK(report.multiplier >= 0.0);
@@ -156,14 +157,14 @@ TEST_CASE("the optimum keeps its limits and satisfies the optimality conditions,
 }
 
 TEST_CASE("a multiplier is what a wider limit gains") {
-    study::StudyProblem problem = solved().problem;
-    REQUIRE(solved().result.status == "optimal");
+    verbs::StudyProblem problem = solved().problem;
+    REQUIRE(solved().result.status == verbs::OptimiseStatus::optimal);
     problem.design.actuator.set(Key::layers, 3.0);
     std::erase_if(problem.design.variables, [](const design::DesignVariable& v) { return v.integer; });
-    const study::LimitReport* active = nullptr;
+    const verbs::LimitReport* active = nullptr;
     std::size_t which = 0;
     for (std::size_t i = 0; i < problem.design.limits.size(); ++i) {
-        const study::LimitReport& report = solved().result.limits[i];
+        const verbs::LimitReport& report = solved().result.limits[i];
         if (report.active && report.multiplier * report.limit > 0.05) {
             active = &report;
             which = i;
@@ -175,9 +176,9 @@ TEST_CASE("a multiplier is what a wider limit gains") {
     std::array<double, 2> force{};
     for (int side = 0; side < 2; ++side) {
         problem.design.limits[which].bound = active->limit + (side == 0 ? -change : change);
-        const OptimiseStudyResult r = study::run_optimise(problem, nullptr, {}, {});
+        const OptimiseStudyResult r = verbs::run_optimise(problem, nullptr, {}, {});
         INFO(r.reason);
-        REQUIRE(r.status == "optimal");
+        REQUIRE(r.status == verbs::OptimiseStatus::optimal);
         CHECK(r.per_layers.size() == 1);
         force[static_cast<std::size_t>(side)] = r.best.value(Quantity::peak_force);
     }
@@ -189,11 +190,11 @@ TEST_CASE("a multiplier is what a wider limit gains") {
 
 TEST_CASE("a thousand random designs hold nothing feasible that is better, nor does the neighbourhood") {
     const Solved& s = solved();
-    REQUIRE(s.result.status == "optimal");
+    REQUIRE(s.result.status == verbs::OptimiseStatus::optimal);
     const design::Problem& problem = s.problem.design;
     const design::Evaluator evaluator(problem);
     design::Demand demand;
-    demand.quantities = study::wanted_quantities(problem);
+    demand.quantities = verbs::wanted_quantities(problem);
     const double optimum = s.result.best.value(Quantity::peak_force);
     test::Random random(2024);
     std::map<std::string, int> tally;

@@ -4,6 +4,7 @@
 #include "optimise/certificate.hpp"
 #include "optimise/halton.hpp"
 #include "optimise/memoised_nlp.hpp"
+#include "optimise/method.hpp"
 #include "optimise/nnls.hpp"
 #include "optimise_problems.hpp"
 
@@ -191,4 +192,27 @@ TEST_CASE("Halton points fill the cube evenly and depend on the seed alone") {
     CHECK(same_bits(Halton(10, 5).point(12), sequence.point(12)));
     CHECK_FALSE(same_bits(Halton(10, 6).point(12), sequence.point(12)));
     CHECK_THROWS_AS(Halton(17, 1), std::invalid_argument);
+}
+
+TEST_CASE("the table of methods: names once, an unknown one is told the list, sizes are checked by capabilities") {
+    std::string all;
+    for (const Method& method : method_table()) {
+        CAPTURE(method.name);
+        CHECK(&find_method(method.name) == &method);  // the first of that name
+        CHECK_FALSE(method.library.empty());
+        CHECK(static_cast<bool>(method.solver));
+        all += " " + method.name;
+    }
+    CHECK_THROWS_WITH_AS((void)find_method("simplex"), ("method = simplex, must be one of" + all).c_str(),
+                         std::invalid_argument);
+    Known known = rosenbrock_disc();  // two variables, one constraint
+    MemoisedNlp nlp(*known.nlp, {});
+    Method picky = find_method("slsqp");
+    CHECK_NOTHROW(check_fits(picky, nlp));
+    picky.capabilities.least_variables = 3;
+    CHECK_THROWS_WITH_AS(check_fits(picky, nlp), "method = slsqp: 2 variables, must be at least 3",
+                         std::invalid_argument);
+    picky.capabilities.least_variables = 1;
+    picky.capabilities.most_constraints = 0;
+    CHECK_THROWS_AS(check_fits(picky, nlp), std::invalid_argument);
 }

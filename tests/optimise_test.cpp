@@ -109,10 +109,10 @@ TEST_CASE("every method: the budget and the request to stop are kept to the eval
             CHECK(outcome.x.size() == 7);
         }
         Known known = hs100();
-        const auto stop = [&] { return known.nlp->calls >= 8; };
-        const Outcome outcome = minimise(*known.nlp, known.start, {.method = method, .stop = stop});
+        const auto cancelled = [&] { return known.nlp->calls >= 8; };
+        const Outcome outcome = minimise(*known.nlp, known.start, {.method = method, .cancelled = cancelled});
         CHECK(outcome.status == Status::budget);
-        CHECK(outcome.message == "stop requested");
+        CHECK(outcome.message == "cancelled");
         CHECK(known.nlp->calls == 8);
     }
 }

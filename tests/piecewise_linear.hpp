@@ -4,7 +4,8 @@
 /// exponentials, evaluated in long double; events are bracketed by fine sampling and bisected.
 
 #include "flow/flow.hpp"
-#include "model/parameters.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 
 #include <array>
 #include <cmath>
@@ -26,7 +27,7 @@ public:
     };
 
     /// parameters as in model::spring; the cubic term must be zero.
-    PiecewiseLinear(const flow::ParameterVector& p, model::StopLaw law) : law_(law) {
+    PiecewiseLinear(const flow::ParameterVector& p, model::ContactLaw law) : law_(law) {
         if (p[model::spring::cubic] != 0.0) { throw std::invalid_argument("piecewise linear: no cubic spring"); }
         c_ = p[model::spring::damping];
         k_ = p[model::spring::stiffness];
@@ -43,8 +44,9 @@ public:
         v_ = start[1];
         theta_ = theta;
         const Real end = theta + duration;
-        mode_ = x_ > gap_ ? (law_ == model::StopLaw::no_tension && stop_force(x_, v_) < 0 ? Mode::slack : Mode::contact)
-                          : Mode::free;
+        mode_ = x_ > gap_
+                  ? (law_ == model::ContactLaw::no_tension && stop_force(x_, v_) < 0 ? Mode::slack : Mode::contact)
+                  : Mode::free;
         if (mode_ == Mode::contact) { open(true); }
         while (follow(end)) {}
         if (mode_ == Mode::contact) { close(true); }
@@ -120,8 +122,8 @@ private:
                     if (gap(next) > 0) { return finish(p, bisect(gap, last, next, first), end, Mode::contact); }
                     break;
                 case Mode::contact:
-                    if (law_ == model::StopLaw::kelvin_voigt ? gap(next) < 0 : force(next) < 0) {
-                        const bool kelvin = law_ == model::StopLaw::kelvin_voigt;
+                    if (law_ == model::ContactLaw::kelvin_voigt ? gap(next) < 0 : force(next) < 0) {
+                        const bool kelvin = law_ == model::ContactLaw::kelvin_voigt;
                         const Real at = kelvin ? bisect(gap, last, next, first) : bisect(force, last, next, first);
                         return finish(p, at, end, kelvin || stop_c_ == 0 ? Mode::free : Mode::slack);
                     }
@@ -208,7 +210,7 @@ private:
         peak_ = std::max(peak_, force(0.5L * (low + high)));
     }
 
-    model::StopLaw law_;
+    model::ContactLaw law_;
     Real c_, k_, force_, gap_, stop_k_, stop_c_, w_;
     Real x_ = 0, v_ = 0, theta_ = 0;
     Mode mode_ = Mode::free;

@@ -1,5 +1,7 @@
 // The point-by-point equations of motion: exact derivatives, power balance, symmetry, rest and resonance.
 
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "sundials_cases.hpp"
 
 #include <doctest/doctest.h>
@@ -72,13 +74,14 @@ void check_derivatives(const Point& point) {
         CHECK(power_d.loss == doctest::Approx(difference(point, direction, h, [&](const Point& q) {
                                   return powers(q).loss;
                               })).epsilon(1e-8));
-        for (int side = 0; side < point.rhs->sides(); ++side) {
-            for (const auto which : {flow::PeakSignal::field, flow::PeakSignal::current}) {
+        const auto peaks = point.rhs->info().peaks;
+        for (int which = 0; which < static_cast<int>(peaks.size()); ++which) {
+            for (int side = 0; side < peaks[static_cast<std::size_t>(which)].parts; ++side) {
                 double exact = 0.0;
                 static_cast<void>(
-                    point.rhs->signal(which, side, point.p, point.theta, point.state, {&direction, 1}, &exact));
+                    point.rhs->peak(which, side, point.p, point.theta, point.state, {&direction, 1}, &exact));
                 const double numeric = difference(point, direction, h, [&](const Point& q) {
-                    return q.rhs->signal(which, side, q.p, q.theta, q.state, {}, nullptr);
+                    return q.rhs->peak(which, side, q.p, q.theta, q.state, {}, nullptr);
                 });
                 CHECK(exact == doctest::Approx(numeric).epsilon(1e-8));
             }
@@ -144,10 +147,10 @@ TEST_CASE("fields and currents of both sides") {
         CAPTURE(side);
         const double u = side == 0 ? somewhere[0] : somewhere[0] - 0.8;
         const double field = charge(side, 0.8, somewhere) * 1.1 / std::sqrt(1.0 + u * u);
-        CHECK(rhs->signal(flow::PeakSignal::field, side, p, 0.8, somewhere, {}, nullptr) == doctest::Approx(field));
+        CHECK(rhs->peak(model::membrane::field, side, p, 0.8, somewhere, {}, nullptr) == doctest::Approx(field));
         const double rate =
             difference({rhs, p}, along, 1e-3, [&](const Point& q) { return charge(side, q.theta, q.state); });
-        CHECK(rhs->signal(flow::PeakSignal::current, side, p, 0.8, somewhere, {}, nullptr) ==
+        CHECK(rhs->peak(model::membrane::current, side, p, 0.8, somewhere, {}, nullptr) ==
               doctest::Approx(1.9 * rate).epsilon(1e-9));
     }
 }
@@ -204,8 +207,7 @@ TEST_CASE("without Maxwell branches two states remain and move alike") {
     ParameterVector p = test::paper_defaults;
     p[model::membrane::mu_ratio] = 0.0;
     p[model::membrane::delta_b] = std::numeric_limits<double>::infinity();
-    const auto elastic =
-        kernels::make_plain_system(model::ActuatorKind::dielectric_elastomer, model::StopLaw::kelvin_voigt, false);
+    const auto elastic = kernels::make_plain_system(model::membrane::elastic, model::ContactLaw::kelvin_voigt);
     REQUIRE(elastic->states() == 2);
     State full{};
     State reduced{};

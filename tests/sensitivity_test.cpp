@@ -1,6 +1,8 @@
 // Sensitivity lanes through entry, exit, release and reload against differences of plain runs.
 
 #include "engine_cases.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "relative.hpp"
 
 #include <doctest/doctest.h>
@@ -13,7 +15,7 @@ using namespace percuss;
 using flow::Direction;
 using flow::ParameterVector;
 using flow::Status;
-using model::StopLaw;
+using model::ContactLaw;
 using test::at;
 using test::membranes;
 using test::paper_defaults;
@@ -74,7 +76,7 @@ std::vector<std::string> component_names(const Case& c) {
 std::vector<double> components(const Case& c, const flow::Result& result) {
     std::vector<double> all;
     for (int k = 0; k < c.integrator->info().states; ++k) { all.push_back(result.state[at(k)]); }
-    for (const auto& [name, member] : test::observables) { all.push_back((result.observables.*member).value); }
+    for (const auto& [name, member] : test::observables) { all.push_back(member(result.observables).value); }
     all.push_back(result.divided_gap.value);
     all.push_back(result.divided_force.value);
     return all;
@@ -82,7 +84,7 @@ std::vector<double> components(const Case& c, const flow::Result& result) {
 std::vector<double> lanes_of(const Case& c, const flow::Result& result, std::size_t lane) {
     std::vector<double> all;
     for (int k = 0; k < c.integrator->info().states; ++k) { all.push_back(result.state_d[at(k)][lane]); }
-    for (const auto& [name, member] : test::observables) { all.push_back((result.observables.*member).d[lane]); }
+    for (const auto& [name, member] : test::observables) { all.push_back(member(result.observables).d[lane]); }
     all.push_back(result.divided_gap.d[lane]);
     all.push_back(result.divided_force.d[lane]);
     return all;
@@ -151,7 +153,7 @@ constexpr double tight = 1e-16;
 }  // namespace
 
 TEST_CASE("membranes, kelvin-voigt: through entry and exit, with one open end, with both, several contacts") {
-    const auto integrator = membranes(StopLaw::kelvin_voigt, tight);
+    const auto integrator = membranes(ContactLaw::kelvin_voigt, tight);
     check_case({"entry and exit", integrator.get(), paper_defaults, request_from(near_orbit, 0.0, test::two_pi), 1});
     check_case({"from another phase", integrator.get(), paper_defaults,
                 request_from({0.45, 0.21, 1.179, 1.195}, 3.1, 2.0), 1});
@@ -168,7 +170,7 @@ TEST_CASE("membranes, kelvin-voigt: through entry and exit, with one open end, w
 }
 
 TEST_CASE("membranes, no-tension: release by force") {
-    const auto integrator = membranes(StopLaw::no_tension, tight);
+    const auto integrator = membranes(ContactLaw::no_tension, tight);
     check_case(
         {"entry, release, leaving", integrator.get(), paper_defaults, request_from(near_orbit, 0.0, test::two_pi), 1});
     check_case({"ends in contact", integrator.get(), paper_defaults, request_from(near_orbit, 0.0, 3.42), 1});
@@ -179,12 +181,12 @@ TEST_CASE("membranes, no-tension: release by force") {
 }
 
 TEST_CASE("membranes without Maxwell branches, without a stop, held, backwards") {
-    const auto elastic = membranes(StopLaw::kelvin_voigt, tight, false);
+    const auto elastic = membranes(ContactLaw::kelvin_voigt, tight, false);
     const ParameterVector none = test::with(paper_defaults, model::membrane::mu_ratio, 0.0);
     check_case({"elastic", elastic.get(), none, request_from({0.4, 0.35}, 0.0, 2.0), 1});
-    const auto free = membranes(StopLaw::none, tight);
+    const auto free = membranes(ContactLaw::none, tight);
     check_case({"no stop", free.get(), paper_defaults, request_from(near_orbit, 0.0, test::two_pi), 0});
-    const auto integrator = membranes(StopLaw::kelvin_voigt, tight);
+    const auto integrator = membranes(ContactLaw::kelvin_voigt, tight);
     flow::Request request = request_from(near_orbit, 0.0, test::two_pi);
     request.stop = flow::StopMode::off;
     check_case({"stop off", integrator.get(), paper_defaults, request, 0});
@@ -202,21 +204,21 @@ TEST_CASE("membranes without Maxwell branches, without a stop, held, backwards")
 }
 
 TEST_CASE("spring and mass: all laws") {
-    const auto kelvin = test::spring(StopLaw::kelvin_voigt, tight);
+    const auto kelvin = test::spring(ContactLaw::kelvin_voigt, tight);
     check_case({"kelvin-voigt", kelvin.get(), spring_parameters, request_from({0.0, 0.6}, 0.0, 4.0), 1});
     check_case({"ends in contact", kelvin.get(), spring_parameters, request_from({0.3, 0.6}, 0.0, 0.25), 1});
     check_case({"several contacts", kelvin.get(), spring_parameters, request_from({0.0, 0.6}, 0.0, 14.0), 3});
     // Shortly before release the damper pulls hardest: the largest acceleration is that just before the event.
     check_case({"released", kelvin.get(), test::with(spring_parameters, model::spring::stop_damping, 5.0),
                 request_from({0.402, -0.7}, 0.0, 0.5), 1});
-    const auto no_tension = test::spring(StopLaw::no_tension, tight);
+    const auto no_tension = test::spring(ContactLaw::no_tension, tight);
     check_case({"no-tension", no_tension.get(), spring_parameters, request_from({0.0, 0.6}, 0.0, 4.0), 1});
     const ParameterVector undamped = test::with(spring_parameters, model::spring::stop_damping, 0.0);
     check_case({"no-tension, no damping", no_tension.get(), undamped, request_from({0.0, 0.6}, 0.0, 4.0), 1});
     // Left and met again inside the stop: soft, strongly damped.
     const ParameterVector deep = {0.05, 1.0, 0.0, 3.0, 0.1, 1.0, 15.0, 0.8};
     check_case({"reload", no_tension.get(), deep, request_from({0.4, -0.5}, 0.2, 3.0), 1});
-    const auto none = test::spring(StopLaw::none, tight);
+    const auto none = test::spring(ContactLaw::none, tight);
     check_case({"none", none.get(), spring_parameters, request_from({0.0, 0.6}, 0.0, 6.0), 0});
 }
 
@@ -224,7 +226,7 @@ TEST_CASE("the stop's own parameters act through the saltation alone while it is
     // Entry just before the end of the run: what the gap does to the end state is the saltation matrix, in closed form:
     // S = I - delta_i e_v e_x^T for fixed times, so moving the stop by dg changes v by + delta_i dg (first order in the
     // time since entry).
-    const auto integrator = test::spring(StopLaw::kelvin_voigt, tight);
+    const auto integrator = test::spring(ContactLaw::kelvin_voigt, tight);
     flow::Request request = request_from({0.3999, 0.6}, 0.0, 1.1 * 2e-4);
     Direction gap;
     gap.parameter[model::spring::gap] = 1.0;

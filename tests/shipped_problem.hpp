@@ -2,7 +2,7 @@
 /// \file
 /// The problem files that come with the program.
 
-#include "io/problem_file.hpp"
+#include "verbs/verbs.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -10,10 +10,10 @@
 
 namespace percuss::test {
 
-inline study::StudyProblem shipped_problem(const std::string& name) {
+inline verbs::StudyProblem shipped_problem(const std::string& name) {
     const char* source = std::getenv("PERCUSS_SOURCE_DIR");
     const std::filesystem::path root = source == nullptr ? "." : source;
-    return io::read_problem(root / "problems" / (name + ".ini"), {}).study;
+    return verbs::study_problem(verbs::read_problem(root / "problems" / (name + ".ini"), {}));
 }
 
 }  // namespace percuss::test

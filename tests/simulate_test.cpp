@@ -1,7 +1,8 @@
-#include "study/simulate.hpp"
+#include "verbs/simulate/simulate.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "memory_table.hpp"
+#include "model/membrane/membrane.hpp"
 #include "orbit/polish.hpp"
 #include "program_run.hpp"
 #include "reference_values.hpp"
@@ -14,23 +15,23 @@
 #include <numbers>
 
 using namespace percuss;
-using study::Kick;
-using study::KickOutcome;
-using study::SimulateStudy;
+using verbs::Kick;
+using verbs::KickOutcome;
+using verbs::SimulateOptions;
 
 namespace {
 
 using std::numbers::pi;
 
-study::StudyProblem at_omega(double omega) {
-    study::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
+verbs::StudyProblem at_omega(double omega) {
+    verbs::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
     problem.design.actuator.set(model::Key::nd_omega, omega);
     return problem;
 }
 
-SimulateStudy from_state(const flow::State& state, int cycles = 100) {
-    SimulateStudy study;
-    study.from = study::SimulationStart::state;
+SimulateOptions from_state(const flow::State& state, int cycles = 100) {
+    SimulateOptions study;
+    study.from = verbs::SimulationStart::state;
     study.start.assign(state.begin(), state.end());
     study.cycles = cycles;
     return study;
@@ -52,9 +53,9 @@ Kick velocity_kick(double velocity, double at) {
     return kick;
 }
 
-study::SimulateStudyResult simulated(const study::StudyProblem& problem, const SimulateStudy& study,
-                                     test::MemoryTable* series = nullptr, test::MemoryTable* contacts = nullptr) {
-    return study::run_simulate(problem, study, series, contacts, {}, {});
+verbs::SimulateResult simulated(const verbs::StudyProblem& problem, const SimulateOptions& study,
+                                test::MemoryTable* series = nullptr, test::MemoryTable* contacts = nullptr) {
+    return verbs::run_simulate(problem, study, series, contacts, {}, {});
 }
 
 const flow::State& upper_branch = test::reference_orbits[1].state;  // at omega = 2.2
@@ -67,10 +68,10 @@ TEST_CASE("a kick throws the device off the upper branch where a lower one stand
     for (const Kick& kick : kicks) {
         CAPTURE(kick.share);
         CAPTURE(kick.velocity);
-        SimulateStudy study = from_state(upper_branch);
+        SimulateOptions study = from_state(upper_branch);
         study.kick = kick;
         const auto high = simulated(at_omega(2.2), study);
-        REQUIRE(high.ending == study::Ending::verified);
+        REQUIRE(high.ending == verbs::Ending::verified);
         CHECK(high.outcome == KickOutcome::fell);
         REQUIRE(high.before);
         REQUIRE(high.after);
@@ -87,36 +88,36 @@ TEST_CASE("a kick throws the device off the upper branch where a lower one stand
         }
 
         const auto low = simulated(at_omega(1.92), study);
-        REQUIRE(low.ending == study::Ending::verified);
+        REQUIRE(low.ending == verbs::Ending::verified);
         CHECK(low.outcome == KickOutcome::recovered);
         CHECK(low.after->peak_force == doctest::Approx(low.before->peak_force).epsilon(1e-9));
         CHECK(low.after->contacts == 1);
     }
-    SimulateStudy weak = from_state(upper_branch);
+    SimulateOptions weak = from_state(upper_branch);
     weak.kick = drive_kick(0.5, 1.0, 50.0);
     CHECK(simulated(at_omega(2.2), weak).outcome == KickOutcome::recovered);
 }
 
 TEST_CASE("a kick can lift the device, and one that does nothing is recovered from") {
-    SimulateStudy study = from_state(test::reference_orbits[3].state);
+    SimulateOptions study = from_state(test::reference_orbits[3].state);
     study.kick = velocity_kick(0.5, 20.0);
     study.cycles = 60;
     const auto lifted = simulated(at_omega(2.2), study);
-    CAPTURE(study::to_string(lifted.outcome));
+    CAPTURE(verbs::to_string(lifted.outcome));
     CHECK(lifted.outcome == KickOutcome::rose);
     CHECK(lifted.after->contacts == 1);
 
-    SimulateStudy nothing = from_state(upper_branch, 10);
+    SimulateOptions nothing = from_state(upper_branch, 10);
     nothing.kick = drive_kick(1.0, 2.37, 3.14);
     const auto idle = simulated(at_omega(2.2), nothing);
     CHECK(idle.outcome == KickOutcome::recovered);
     for (std::size_t k = 0; k < 4; ++k) { CHECK(std::abs(idle.end_state[k] - upper_branch[k]) < 1e-10); }
 
     // A motion that never settles cannot be told from another one.
-    SimulateStudy restless = from_state(orbit_at_1_9, 20);
+    SimulateOptions restless = from_state(orbit_at_1_9, 20);
     restless.kick = velocity_kick(0.01, 10.0);
     const auto chaos = simulated(at_omega(1.70), restless);
-    CHECK(chaos.ending == study::Ending::verified);
+    CHECK(chaos.ending == verbs::Ending::verified);
     CHECK(chaos.outcome == KickOutcome::undecided);
     CHECK_FALSE(chaos.after->settled);
     CHECK_FALSE(chaos.after->polished);
@@ -125,9 +126,9 @@ TEST_CASE("a kick can lift the device, and one that does nothing is recovered fr
 TEST_CASE("rows and contacts of a known orbit") {
     test::MemoryTable series;
     test::MemoryTable contacts;
-    SimulateStudy study = from_state(orbit_at_1_9, 3);
+    SimulateOptions study = from_state(orbit_at_1_9, 3);
     const auto result = simulated(at_omega(1.9), study, &series, &contacts);
-    REQUIRE(result.ending == study::Ending::verified);
+    REQUIRE(result.ending == verbs::Ending::verified);
     REQUIRE(series.rows().size() == 3 * 64 + 1);
     REQUIRE(contacts.rows().size() == 3);
     CHECK(result.contacts == 3);
@@ -160,7 +161,7 @@ TEST_CASE("rows and contacts of a known orbit") {
 TEST_CASE("sampling changes neither the motion nor its contacts") {
     test::MemoryTable coarse;
     test::MemoryTable fine;
-    SimulateStudy study;  // from rest
+    SimulateOptions study;  // from rest
     study.cycles = 12;
     study.samples = 1;
     const auto once = simulated(at_omega(1.75), study, nullptr, &coarse);
@@ -180,7 +181,7 @@ TEST_CASE("sampling changes neither the motion nor its contacts") {
 
 TEST_CASE("kicks are where they were asked for") {
     test::MemoryTable series;
-    SimulateStudy study = from_state(orbit_at_1_9, 4);
+    SimulateOptions study = from_state(orbit_at_1_9, 4);
     study.samples = 8;
     study.kick = velocity_kick(0.03, 1.3);
     static_cast<void>(simulated(at_omega(1.9), study, &series));
@@ -216,7 +217,7 @@ TEST_CASE("kicks are where they were asked for") {
 TEST_CASE("the motion without the kick goes on from the phase of the kick") {
     for (const double at : {1.0, 1.25, 1.5, 1.75}) {
         CAPTURE(at);
-        SimulateStudy study = from_state(upper_branch, 3);
+        SimulateOptions study = from_state(upper_branch, 3);
         study.kick = velocity_kick(0.0, at);
         const auto result = simulated(at_omega(2.2), study);
         REQUIRE(result.before);
@@ -226,36 +227,36 @@ TEST_CASE("the motion without the kick goes on from the phase of the kick") {
 }
 
 TEST_CASE("a motion of several cycles is the same from each of its strobed states") {
-    const study::StudyProblem problem = at_omega(1.78);
+    const verbs::StudyProblem problem = at_omega(1.78);
     const design::Scene scene = design::make_scene(problem.design);
     const model::Scaled scaled = model::scale(problem.design.actuator);
     const flow::System system{scene.own.get(), scaled.parameters, nullptr};
     const flow::State first = test::reference_orbits[5].state;
     const auto later = orbit::settle(system, first, 1);
     REQUIRE(later);
-    const study::Motion one = study::identify_motion(system, first, scaled.scales);
-    const study::Motion two = study::identify_motion(system, *later, scaled.scales);
+    const verbs::Motion one = verbs::identify_motion(system, first, scaled.scales);
+    const verbs::Motion two = verbs::identify_motion(system, *later, scaled.scales);
     REQUIRE(one.period == 3);
     CHECK(one.polished);
     CHECK(one.peak_force == doctest::Approx(test::reference_orbits[5].peak_force).epsilon(1e-8));
     CHECK(orbit::relative_distance(system, one.own_state, two.own_state) > 1e-3);
-    CHECK(study::same_motion(system, one, two));
-    CHECK(study::same_motion(system, two, one));
+    CHECK(verbs::same_motion(system, one, two));
+    CHECK(verbs::same_motion(system, two, one));
     const orbit::Orbit single = orbit::polish_orbit(system, orbit_at_1_9, 1);
     REQUIRE(single.ok());
-    const study::Motion other = study::identify_motion(system, orbit::state_at_zero(system, single), scaled.scales);
+    const verbs::Motion other = verbs::identify_motion(system, orbit::state_at_zero(system, single), scaled.scales);
     REQUIRE(other.settled);
     CHECK(other.period == 1);
-    CHECK_FALSE(study::same_motion(system, one, other));
+    CHECK_FALSE(verbs::same_motion(system, one, other));
 }
 
 TEST_CASE("starts: an orbit at the edge, a given one, rest; no edge without impact") {
-    study::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
-    SimulateStudy study;
+    verbs::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
+    SimulateOptions study;
     study.cycles = 2;
-    study.from = study::SimulationStart::orbit;
+    study.from = verbs::SimulationStart::orbit;
     const auto edge = simulated(problem, study);
-    REQUIRE(edge.ending == study::Ending::verified);
+    REQUIRE(edge.ending == verbs::Ending::verified);
     CHECK(edge.operating_point.edge_kind == design::EdgeKind::grazing);
     CHECK(edge.operating_point.omega == doctest::Approx(0.99 * test::edge_reference::omega).epsilon(1e-9));
     for (std::size_t k = 0; k < 4; ++k) { CHECK(std::abs(edge.end_state[k] - edge.start[k]) < 1e-10); }
@@ -264,12 +265,12 @@ TEST_CASE("starts: an orbit at the edge, a given one, rest; no edge without impa
     study.orbit_start = std::vector<double>(upper_branch.begin(), upper_branch.end());
     (*study.orbit_start)[0] += 1e-4;
     const auto polished = simulated(at_omega(2.2), study);
-    REQUIRE(polished.ending == study::Ending::verified);
+    REQUIRE(polished.ending == verbs::Ending::verified);
     for (std::size_t k = 0; k < 4; ++k) { CHECK(std::abs(polished.start[k] - upper_branch[k]) < 1e-10); }
 
     problem.design.actuator.set(model::Key::nd_voltage, 0.1);
-    const auto weak = simulated(problem, SimulateStudy{});
-    CHECK(weak.ending == study::Ending::infeasible);
+    const auto weak = simulated(problem, SimulateOptions{});
+    CHECK(weak.ending == verbs::Ending::infeasible);
     CHECK_FALSE(weak.reason.empty());
 }
 

@@ -8,7 +8,8 @@
 #include "flow/flow.hpp"
 #include "flow/sundials.hpp"
 #include "kernels/plain_systems.hpp"
-#include "model/parameters.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,30 +32,39 @@ inline constexpr flow::ParameterVector paper_defaults = {1.1, 1.0,    3.0, 2.0, 
 /// Period-1 impacting orbit there, at theta = 0.
 inline constexpr flow::State paper_orbit = {0.28441053480900, -0.04807487486239, 1.17803265118641, 1.19639597555165};
 
-inline std::shared_ptr<const flow::RightHandSide> membranes(model::StopLaw law = model::StopLaw::kelvin_voigt) {
-    return kernels::make_plain_system(model::ActuatorKind::dielectric_elastomer, law);
+inline std::shared_ptr<const flow::RightHandSide> membranes(model::ContactLaw law = model::ContactLaw::kelvin_voigt) {
+    return kernels::make_plain_system(model::membrane::viscous, law);
 }
-inline std::shared_ptr<const flow::RightHandSide> spring(model::StopLaw law = model::StopLaw::kelvin_voigt) {
-    return kernels::make_plain_system(model::ActuatorKind::spring_mass, law);
+inline std::shared_ptr<const flow::RightHandSide> spring(model::ContactLaw law = model::ContactLaw::kelvin_voigt) {
+    return kernels::make_plain_system(model::spring::scene, law);
 }
 
+/// An observable by name; call it with the observables of a run.
 struct NamedObservable {
     std::string_view name;
-    flow::Sensitive flow::Observables::*member;
+    const flow::Sensitive& (*member)(const flow::Observables&);
 };
+template <flow::Sensitive flow::Observables::*Member>
+const flow::Sensitive& one_of(const flow::Observables& all) {
+    return all.*Member;
+}
+template <std::size_t K>
+const flow::Sensitive& peak_of(const flow::Observables& all) {
+    return all.peak[K];
+}
 inline constexpr std::array<NamedObservable, 12> observables = {{
-    {"x_max", &flow::Observables::x_max},
-    {"x_min", &flow::Observables::x_min},
-    {"peak_force", &flow::Observables::peak_force},
-    {"impact_velocity", &flow::Observables::impact_velocity},
-    {"contact_time", &flow::Observables::contact_time},
-    {"impulse", &flow::Observables::impulse},
-    {"stop_work", &flow::Observables::stop_work},
-    {"peak_acceleration", &flow::Observables::peak_acceleration},
-    {"peak_field", &flow::Observables::peak_field},
-    {"peak_current", &flow::Observables::peak_current},
-    {"drive_work", &flow::Observables::drive_work},
-    {"dissipation", &flow::Observables::dissipation},
+    {"x_max", one_of<&flow::Observables::x_max>},
+    {"x_min", one_of<&flow::Observables::x_min>},
+    {"peak_force", one_of<&flow::Observables::peak_force>},
+    {"impact_velocity", one_of<&flow::Observables::impact_velocity>},
+    {"contact_time", one_of<&flow::Observables::contact_time>},
+    {"impulse", one_of<&flow::Observables::impulse>},
+    {"stop_work", one_of<&flow::Observables::stop_work>},
+    {"peak_acceleration", one_of<&flow::Observables::peak_acceleration>},
+    {"peak_field", peak_of<model::membrane::field>},
+    {"peak_current", peak_of<model::membrane::current>},
+    {"drive_work", one_of<&flow::Observables::drive_work>},
+    {"dissipation", one_of<&flow::Observables::dissipation>},
 }};
 
 /// Every way in which a run can be moved: each state, each parameter, the phase.

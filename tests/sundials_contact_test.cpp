@@ -1,6 +1,8 @@
 // Contacts of the step-by-step backends: closed forms, grazing, the no-tension law, held and free runs, stiff stops,
 // and what is returned or thrown when a run cannot be done.
 
+#include "model/membrane/membrane.hpp"
+#include "model/spring/spring.hpp"
 #include "sundials_cases.hpp"
 
 #include <doctest/doctest.h>
@@ -65,9 +67,9 @@ struct Bounce {
 TEST_CASE("a bounce off the stop: closed form, both laws") {
     const Bounce bounce;
     for (const Backend& backend : backends) {
-        for (const auto law : {model::StopLaw::kelvin_voigt, model::StopLaw::no_tension}) {
+        for (const auto law : {model::ContactLaw::kelvin_voigt, model::ContactLaw::no_tension}) {
             CAPTURE(backend.name);
-            const bool pulls = law == model::StopLaw::kelvin_voigt;
+            const bool pulls = law == model::ContactLaw::kelvin_voigt;
             CAPTURE(pulls);
             const auto integrator = backend.make(test::spring(law), 1e-12);
             const Result result = test::run(*integrator, flight());
@@ -161,7 +163,7 @@ TEST_CASE("no tension: force never pulls, contact may be renewed inside the zone
     c.request.observe = flow::observe_force;
     for (const Backend& backend : backends) {
         CAPTURE(backend.name);
-        const auto integrator = backend.make(test::spring(model::StopLaw::no_tension), 1e-12);
+        const auto integrator = backend.make(test::spring(model::ContactLaw::no_tension), 1e-12);
         const Result result = test::run(*integrator, c);
         REQUIRE(result.status == Status::ok);
         REQUIRE(result.contacts.size() == 7);
@@ -185,7 +187,7 @@ TEST_CASE("no tension: force never pulls, contact may be renewed inside the zone
     // A start inside the zone that leaves faster than the spring pushes is no contact; one that does not is.
     Case inside = flight();
     inside.request.state = {gap + 0.01, -0.5};  // force 40 * 0.01 - 3 * 0.5 < 0
-    const auto integrator = flow::make_erk(test::spring(model::StopLaw::no_tension), 1e-12);
+    const auto integrator = flow::make_erk(test::spring(model::ContactLaw::no_tension), 1e-12);
     const Result slack = test::run(*integrator, inside);
     CHECK(slack.contacts.empty());
     CHECK(slack.state[1] == -0.5);
@@ -197,7 +199,7 @@ TEST_CASE("no tension: force never pulls, contact may be renewed inside the zone
     // Without damping the force ends on the surface, as in the other law.
     Case elastic = flight();
     elastic.parameters[model::spring::stop_damping] = 0.0;
-    const Result one = test::run(*flow::make_erk(test::spring(model::StopLaw::no_tension), 1e-12), elastic);
+    const Result one = test::run(*flow::make_erk(test::spring(model::ContactLaw::no_tension), 1e-12), elastic);
     const Result other = test::run(*flow::make_erk(test::spring(), 1e-12), elastic);
     REQUIRE(one.contacts.size() == 1);
     CHECK(one.contacts.front().state_out[0] == doctest::Approx(gap).epsilon(1e-14));

@@ -1,6 +1,7 @@
 // Derivatives of end states and of every observable: against differences of the integrator itself, and of one backend
 // against the other.
 
+#include "model/membrane/membrane.hpp"
 #include "sundials_cases.hpp"
 
 #include <doctest/doctest.h>
@@ -56,7 +57,7 @@ struct Output {
 std::vector<Output> outputs(int states, bool held) {
     std::vector<Output> list;
     for (const test::NamedObservable& o : test::observables) {
-        list.push_back({std::string(o.name), [o](const Result& r) { return r.observables.*o.member; }});
+        list.push_back({std::string(o.name), [o](const Result& r) { return o.member(r.observables); }});
     }
     for (int i = 0; i < states; ++i) {
         list.push_back({"state " + std::to_string(i), [i](const Result& r) {
@@ -142,7 +143,7 @@ void check_agreement(const flow::Integrator& a, const flow::Integrator& b, const
 }  // namespace
 
 TEST_CASE("gradients of a transient through two contacts, both stop laws") {
-    for (const auto law : {model::StopLaw::kelvin_voigt, model::StopLaw::no_tension}) {
+    for (const auto law : {model::ContactLaw::kelvin_voigt, model::ContactLaw::no_tension}) {
         const auto erk = flow::make_erk(test::membranes(law), 1e-13);
         const Result result = test::run(*erk, transient());
         REQUIRE(result.contacts.size() == 2);
@@ -165,7 +166,7 @@ TEST_CASE("gradients where the peak force is the jump at entry and the peak acce
 }
 
 TEST_CASE("gradients through release and renewed contact inside the zone") {
-    const auto erk = flow::make_erk(test::spring(model::StopLaw::no_tension), 1e-13);
+    const auto erk = flow::make_erk(test::spring(model::ContactLaw::no_tension), 1e-13);
     const Result result = test::run(*erk, reloading());
     const auto renewed = std::count_if(result.contacts.begin(), result.contacts.end(),
                                        [](const flow::Contact& k) { return k.state_in[0] > 0.05 + 1e-6; });
@@ -200,14 +201,14 @@ TEST_CASE("gradients of a run that starts inside the stop and one that has just 
 }
 
 TEST_CASE("gradients of CVODES agree with those of ARKODE") {
-    for (const auto law : {model::StopLaw::kelvin_voigt, model::StopLaw::no_tension}) {
+    for (const auto law : {model::ContactLaw::kelvin_voigt, model::ContactLaw::no_tension}) {
         const auto rhs = test::membranes(law);
         const auto erk = flow::make_erk(rhs, 1e-13);
         const auto cvode = flow::make_cvode(rhs, 1e-13);
         check_agreement(*erk, *cvode, transient(), 1e-8);
         check_agreement(*erk, *cvode, transient_with(2500.0, 120.0), 1e-8);
     }
-    const auto rhs = test::spring(model::StopLaw::no_tension);
+    const auto rhs = test::spring(model::ContactLaw::no_tension);
     check_agreement(*flow::make_erk(rhs, 1e-13), *flow::make_cvode(rhs, 1e-13), reloading(), 1e-8);
     Case held = transient();
     held.request.state = {0.5, 0.08, 1.18, 1.19};

@@ -1,11 +1,11 @@
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "memory_table.hpp"
 #include "orbit/frequency_sweep.hpp"
 #include "orbit/polish.hpp"
 #include "program_run.hpp"
 #include "reference_values.hpp"
 #include "shipped_problem.hpp"
-#include "study/sweep_findings.hpp"
+#include "verbs/sweep/sweep_findings.hpp"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -14,34 +14,36 @@
 #include <cmath>
 
 using namespace percuss;
-using study::SweepDirection;
-using study::SweepPoint;
+using verbs::SweepDirection;
+using verbs::SweepPoint;
 
 namespace {
 
 /// A shipped problem ready to integrate.
 struct Bench {
-    study::StudyProblem problem;
+    verbs::StudyProblem problem;
     design::Scene scene;
     flow::System system;
-    explicit Bench(const std::string& name) : problem(test::shipped_problem(name)), scene(make_scene(problem.design)) {
+    explicit Bench(const std::string& name)
+        : problem(test::shipped_problem(name)),
+          scene(make_integrators(problem.design)) {
         system = {scene.own.get(), model::scale(problem.design.actuator).parameters, nullptr};
     }
     [[nodiscard]] flow::State rest() const { return scene.own->rest_state(system.parameters); }
 };
 
-study::SweepStudy paper_range(int steps = 180) {
-    study::SweepStudy study;
+verbs::SweepOptions paper_range(int steps = 180) {
+    verbs::SweepOptions study;
     study.from = 1.2;
     study.to = 3.0;
     study.steps = steps;
     return study;
 }
 
-study::SweepStudyResult swept(const study::SweepStudy& study, int jobs = 1, study::RowSink* rows = nullptr) {
-    study::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
+verbs::SweepResult swept(const verbs::SweepOptions& study, int jobs = 1, results::RowSink* rows = nullptr) {
+    verbs::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
     problem.jobs = jobs;
-    return study::run_sweep(problem, study, rows, {}, {});
+    return verbs::run_sweep(problem, study, rows, {}, {});
 }
 
 const SweepPoint& at(const SweepDirection& direction, double omega) {
@@ -144,7 +146,7 @@ TEST_CASE("periods: a subharmonic, a spiral that is none, a motion that never re
 TEST_CASE("the paper's sweep jumps at the edges and lies on the exact orbits") {
     const Bench bench("wu2022-nondimensional");
     const auto result = swept(paper_range());
-    REQUIRE(result.ending == study::Ending::verified);
+    REQUIRE(result.ending == verbs::Ending::verified);
     REQUIRE(result.directions.size() == 2);
 
     for (const SweepDirection& direction : result.directions) {
@@ -153,7 +155,7 @@ TEST_CASE("the paper's sweep jumps at the edges and lies on the exact orbits") {
         CAPTURE(direction.forward);
         REQUIRE(direction.points.size() == 181);
         int found = 0;
-        for (const study::SweepJump& jump : direction.jumps) {
+        for (const verbs::SweepJump& jump : direction.jumps) {
             const SweepPoint& before = direction.points[jump.before];
             const SweepPoint& after = direction.points[jump.after];
             if (before.omega < 1.8) { continue; }  // the cascade
@@ -195,7 +197,7 @@ TEST_CASE("the paper's sweep jumps at the edges and lies on the exact orbits") {
     compare_with(at(result.directions[0], 1.9), test::reference_orbits[0]);
     compare_with(at(result.directions[1], 1.9), test::reference_orbits[0]);
 
-    const study::SweepComparison& comparison = result.comparison;
+    const verbs::SweepComparison& comparison = result.comparison;
     CHECK_FALSE(comparison.coincide());
     REQUIRE(comparison.ranges.size() == 1);
     CHECK(comparison.ranges[0].first == doctest::Approx(1.94));
@@ -203,10 +205,10 @@ TEST_CASE("the paper's sweep jumps at the edges and lies on the exact orbits") {
 }
 
 TEST_CASE("without the stop both directions coincide") {
-    study::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
+    verbs::StudyProblem problem = test::shipped_problem("wu2022-nondimensional");
     problem.design.actuator.law = model::StopLaw::none;
-    const auto result = study::run_sweep(problem, paper_range(60), nullptr, {}, {});
-    REQUIRE(result.ending == study::Ending::verified);
+    const auto result = verbs::run_sweep(problem, paper_range(60), nullptr, {}, {});
+    REQUIRE(result.ending == verbs::Ending::verified);
     CHECK(result.comparison.coincide());
     CHECK(result.comparison.compared == 61);
     CHECK(result.directions[0].jumps.empty());
@@ -231,19 +233,19 @@ TEST_CASE("two threads give the same bits, and a stopped sweep keeps what it has
 
     int asked = 0;
     test::MemoryTable kept;
-    const auto stopped = study::run_sweep(test::shipped_problem("wu2022-nondimensional"), paper_range(40), &kept, {},
+    const auto stopped = verbs::run_sweep(test::shipped_problem("wu2022-nondimensional"), paper_range(40), &kept, {},
                                           [&] { return ++asked >= 5; });
-    CHECK(stopped.ending == study::Ending::interrupted);
+    CHECK(stopped.ending == verbs::Ending::interrupted);
     CHECK(stopped.directions[0].points.size() == 5);
     CHECK(kept.rows().size() == 6);  // the other direction ends after its first point
 }
 
 TEST_CASE("a chirp has a constant rate in time and jumps a little late") {
-    study::SweepStudy study = paper_range();
-    study.mode = study::SweepMode::chirp;
+    verbs::SweepOptions study = paper_range();
+    study.mode = verbs::SweepMode::chirp;
     study.chirp_cycles = 4000;
     const auto result = swept(study);
-    REQUIRE(result.ending == study::Ending::verified);
+    REQUIRE(result.ending == verbs::Ending::verified);
     const auto& forward = result.directions[0].points;
     REQUIRE(forward.size() == 4000);
     CHECK(forward.front().omega > 1.2);
@@ -257,7 +259,7 @@ TEST_CASE("a chirp has a constant rate in time and jumps a little late") {
     CHECK(rate(3000) == doctest::Approx(rate(10)).epsilon(1e-9));
 
     const auto last_jump = [&](const SweepDirection& direction, bool from_above) {
-        const study::SweepJump jump = from_above ? direction.jumps.front() : direction.jumps.back();
+        const verbs::SweepJump jump = from_above ? direction.jumps.front() : direction.jumps.back();
         return direction.points[jump.after].omega;
     };
     REQUIRE_FALSE(result.directions[0].jumps.empty());
@@ -272,34 +274,34 @@ TEST_CASE("a chirp has a constant rate in time and jumps a little late") {
 TEST_CASE("findings on made-up sweeps") {
     std::vector<SweepPoint> line;
     for (int i = 0; i < 10; ++i) { line.push_back(point(1.0 + 0.1 * i, 1.0 + 0.01 * i, 0.0, 0)); }
-    CHECK(study::find_jumps(line).empty());
+    CHECK(verbs::find_jumps(line).empty());
     auto broken = line;
     for (std::size_t i = 6; i < 10; ++i) { broken[i].amplitude += 0.5; }
-    auto jumps = study::find_jumps(broken);
+    auto jumps = verbs::find_jumps(broken);
     REQUIRE(jumps.size() == 1);
     CHECK(jumps[0].before == 5);
     CHECK(jumps[0].amplitude);
     CHECK_FALSE(jumps[0].peak_force);
     auto doubled = line;
     for (std::size_t i = 3; i < 10; ++i) { doubled[i].period = 2; }
-    jumps = study::find_jumps(doubled);
+    jumps = verbs::find_jumps(doubled);
     REQUIRE(jumps.size() == 1);
     CHECK(jumps[0].period);
     CHECK_FALSE(jumps[0].contacts);
 
     auto back = line;
     std::reverse(back.begin(), back.end());
-    CHECK(study::compare(line, back, 1e-8).coincide());
+    CHECK(verbs::compare(line, back, 1e-8).coincide());
     back[2].peak_force = 1.0;
     back[3].settled = false;
-    const auto comparison = study::compare(line, back, 1e-8);
+    const auto comparison = verbs::compare(line, back, 1e-8);
     CHECK(comparison.different == 1);
     CHECK(comparison.unsettled == 1);
     CHECK(comparison.compared == 9);
     REQUIRE(comparison.ranges.size() == 1);
     CHECK(comparison.ranges[0].first == line[7].omega);
     CHECK(comparison.ranges[0].second == line[7].omega);
-    CHECK_FALSE(study::compare(line, {}, 1e-8).coincide());
+    CHECK_FALSE(verbs::compare(line, {}, 1e-8).coincide());
 }
 
 namespace program {

@@ -4,6 +4,7 @@
 #include "engine_cases.hpp"
 #include "flow/sundials.hpp"
 #include "kernels/plain_systems.hpp"
+#include "model/membrane/membrane.hpp"
 #include "relative.hpp"
 
 #include <doctest/doctest.h>
@@ -36,7 +37,7 @@ TEST_CASE("without Maxwell branches: the limit of a vanishing mu_ratio, and the 
     request.state = {0.4, 0.35, 1.18, 1.19};
     request.duration = 9.0;
     request.observe = flow::observe_all;
-    const auto elastic = membranes(model::StopLaw::kelvin_voigt, 1e-13, false);
+    const auto elastic = membranes(model::ContactLaw::kelvin_voigt, 1e-13, false);
     const auto viscous = membranes();
     REQUIRE(elastic->info().states == 2);
     const ParameterVector none = test::with(paper_defaults, model::membrane::mu_ratio, 0.0);
@@ -53,8 +54,7 @@ TEST_CASE("without Maxwell branches: the limit of a vanishing mu_ratio, and the 
         CHECK(apart < 1e-2 * last);
         last = apart;
     }
-    const auto exact =
-        kernels::make_plain_system(model::ActuatorKind::dielectric_elastomer, model::StopLaw::kelvin_voigt, false);
+    const auto exact = kernels::make_plain_system(model::membrane::elastic, model::ContactLaw::kelvin_voigt);
     const auto erk = flow::make_erk(exact, 1e-13);
     const flow::Result c = test::run(*erk, none, request);
     REQUIRE(c.status == Status::ok);
@@ -62,7 +62,7 @@ TEST_CASE("without Maxwell branches: the limit of a vanishing mu_ratio, and the 
     CHECK(test::distance(a.state, c.state, 2) < 1e-11);
     for (const auto& [name, member] : test::observables) {
         CAPTURE(name);
-        CHECK((a.observables.*member).value == test::relative((c.observables.*member).value, 1e-9));
+        CHECK(member(a.observables).value == test::relative(member(c.observables).value, 1e-9));
     }
 }
 
@@ -74,27 +74,22 @@ TEST_CASE("kernels of all instruction sets agree, and so do those for few and ma
     directions[6].parameter[model::membrane::omega] = 1.0;
     directions[7].parameter[model::membrane::voltage] = 1.0;
     struct Scene {
-        model::ActuatorKind kind;
-        bool viscous;
+        const model::Scene* kind;
         ParameterVector p;
         State state;
     };
     const std::vector<Scene> scenes = {
-        {model::ActuatorKind::dielectric_elastomer, true, paper_defaults, test::reference_orbits[0].state},
-        {model::ActuatorKind::dielectric_elastomer,
-         false,
-         test::with(paper_defaults, model::membrane::mu_ratio, 0.0),
-         {0.4, 0.35}},
-        {model::ActuatorKind::spring_mass, true, {0.1, 1.0, 0.3, 0.5, 0.4, 200.0, 1.0, 1.1}, {0.2, 0.5}}};
+        {&model::membrane::viscous, paper_defaults, test::reference_orbits[0].state},
+        {&model::membrane::elastic, test::with(paper_defaults, model::membrane::mu_ratio, 0.0), {0.4, 0.35}},
+        {&model::spring::scene, {0.1, 1.0, 0.3, 0.5, 0.4, 200.0, 1.0, 1.1}, {0.2, 0.5}}};
     CHECK(kernels::instruction_sets().size() >= 1);
     CHECK(kernels::instruction_set_in_use("auto") == kernels::instruction_sets().back());
     for (const Scene& scene : scenes) {
-        CAPTURE(scene.viscous);
+        CAPTURE(scene.kind->name);
         const auto run_with = [&](std::string_view set, std::size_t lanes) {
             kernels::IntegratorOptions options;
             options.instruction_set = set;
-            const auto integrator =
-                kernels::make_integrator(scene.kind, model::StopLaw::kelvin_voigt, scene.viscous, options);
+            const auto integrator = kernels::make_integrator(*scene.kind, model::ContactLaw::kelvin_voigt, options);
             flow::Request request;
             request.state = scene.state;
             request.duration = two_pi;
@@ -113,8 +108,8 @@ TEST_CASE("kernels of all instruction sets agree, and so do those for few and ma
             }
             for (const auto& [name, member] : test::observables) {
                 CAPTURE(name);
-                const flow::Sensitive& a = one.observables.*member;
-                const flow::Sensitive& b = two.observables.*member;
+                const flow::Sensitive& a = member(one.observables);
+                const flow::Sensitive& b = member(two.observables);
                 CHECK(b.value == test::relative(a.value, 1e-12));
                 for (std::size_t i = 0; i < lanes; ++i) {
                     CHECK(b.d[i] == doctest::Approx(a.d[i]).epsilon(apart).scale(1.0));
@@ -148,15 +143,15 @@ TEST_CASE("requests that cannot be served are refused; motions that cannot be fo
     CHECK_THROWS_AS(test::run(*integrator, paper_defaults, request), std::invalid_argument);
     for (double tolerance : {0.0, -1e-9, 1e-17, 0.1, std::nan("")}) {
         CAPTURE(tolerance);
-        CHECK_THROWS_AS(membranes(model::StopLaw::kelvin_voigt, tolerance), std::invalid_argument);
+        CHECK_THROWS_AS(membranes(model::ContactLaw::kelvin_voigt, tolerance), std::invalid_argument);
     }
     kernels::IntegratorOptions options;
     options.integrator = "euler";
-    CHECK_THROWS_AS(kernels::make_integrator(model::ActuatorKind::spring_mass, model::StopLaw::none, true, options),
+    CHECK_THROWS_AS(kernels::make_integrator(model::spring::scene, model::ContactLaw::none, options),
                     std::invalid_argument);
     options = {};
     options.instruction_set = "v9";
-    CHECK_THROWS_AS(kernels::make_integrator(model::ActuatorKind::spring_mass, model::StopLaw::none, true, options),
+    CHECK_THROWS_AS(kernels::make_integrator(model::spring::scene, model::ContactLaw::none, options),
                     std::invalid_argument);
 
     request = reference_request();
@@ -167,9 +162,9 @@ TEST_CASE("requests that cannot be served are refused; motions that cannot be fo
     request.state = {3.0, 0.0};
     request.duration = 50.0;
     const ParameterVector runaway = {0.1, 1.0, -0.5, 0.1, 10.0, 100.0, 0.0, 1.0};
-    CHECK(test::run(*test::spring(model::StopLaw::none), runaway, request).status == Status::diverged);
+    CHECK(test::run(*test::spring(model::ContactLaw::none), runaway, request).status == Status::diverged);
     request.state = {std::nan(""), 0.0};
-    CHECK(test::run(*test::spring(model::StopLaw::none), runaway, request).status == Status::diverged);
+    CHECK(test::run(*test::spring(model::ContactLaw::none), runaway, request).status == Status::diverged);
     request = reference_request();
     request.state[2] = -1.0;  // a negative stretch
     CHECK(test::run(*integrator, paper_defaults, request).status == Status::diverged);

@@ -4,8 +4,9 @@
 #include "engine_cases.hpp"
 #include "flow/taylor.hpp"
 #include "flow/taylor_order.hpp"
-#include "model/membrane_jet.hpp"
-#include "model/spring_jet.hpp"
+#include "model/membrane/jet.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/spring/jet.hpp"
 #include "orbit/orbit.hpp"
 #include "quad.hpp"
 
@@ -46,7 +47,7 @@ struct QuadRun {
 /// One drive period from theta = 0. Tolerance 1e-32 makes the order 39.
 QuadRun quad_period(const ParameterVector& p, const QuadState& start) {
     const auto q = widened(p);
-    flow::TaylorRun<QuadJet> run(q.data(), flow::Law::kelvin_voigt, flow::taylor_order(1e-32));
+    flow::TaylorRun<QuadJet> run(q.data(), model::ContactLaw::kelvin_voigt, flow::taylor_order(1e-32));
     flow::Request request;
     request.observe = flow::observe_extrema | flow::observe_force;
     QuadRun result;

@@ -4,9 +4,12 @@
 #include "flow/sundials.hpp"
 #include "flow/taylor_order.hpp"
 #include "kernels/plain_systems.hpp"
-#include "model/membrane_jet.hpp"
-#include "model/plain_rhs.hpp"
-#include "model/spring_jet.hpp"
+#include "model/membrane/jet.hpp"
+#include "model/membrane/membrane.hpp"
+#include "model/membrane/plain.hpp"
+#include "model/spring/jet.hpp"
+#include "model/spring/plain.hpp"
+#include "model/spring/spring.hpp"
 #include "naive_series.hpp"
 #include "relative.hpp"
 
@@ -258,7 +261,7 @@ TEST_CASE("the error of a period follows the tolerance, neither worse nor far be
     for (int digits = 4; digits <= 10; ++digits) {
         const double tolerance = std::pow(10.0, -digits);
         CAPTURE(tolerance);
-        const auto integrator = membranes(model::StopLaw::kelvin_voigt, tolerance);
+        const auto integrator = membranes(model::ContactLaw::kelvin_voigt, tolerance);
         CHECK(integrator->tolerance() == tolerance);
         const flow::Result result = test::run(*integrator, paper_defaults, reference_request());
         const double error = test::distance(result.state, test::reference_orbits[0].state, 4);

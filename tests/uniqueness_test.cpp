@@ -1,10 +1,11 @@
 #include "design/evaluate.hpp"
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "design/window.hpp"
 #include "design_cases.hpp"
+#include "model/membrane/membrane.hpp"
 #include "orbit/polish.hpp"
 #include "relative.hpp"
-#include "study/optimise.hpp"
+#include "verbs/optimise/optimise.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -48,7 +49,7 @@ TEST_CASE("tier 2: the defaults are not refuted one per cent below the edge, and
 }
 
 TEST_CASE("tier 2: at omega = 1.78 two longer motions refute the period-1 motion, and are named with their shares") {
-    const Evaluation e = test::evaluate(sampled(), {{Key::nd_omega, 1.78}});
+    const Evaluation e = test::evaluate(sampled(), {{percuss::model::membrane::key::nd_omega, 1.78}});
     CHECK(e.status == EvaluationStatus::not_unique);
     CHECK(e.uniqueness.verdict == Verdict::not_unique);
     REQUIRE(e.uniqueness.attractors.size() == 2);
@@ -67,13 +68,13 @@ TEST_CASE("tier 2: at omega = 1.78 two longer motions refute the period-1 motion
     CHECK(shares < 0.75);
     // Tier 1 does not see them.
     design::Problem orbit_only = nondimensional();
-    CHECK(test::evaluate(orbit_only, {{Key::nd_omega, 1.78}}).status == EvaluationStatus::ok);
+    CHECK(test::evaluate(orbit_only, {{percuss::model::membrane::key::nd_omega, 1.78}}).status == EvaluationStatus::ok);
 }
 
 TEST_CASE("the window of the period-3 motion, carried to another design, is the one found there, with its gradient") {
     const design::Problem problem = nondimensional();
     const design::Evaluator evaluator(problem);
-    const model::Specification home = changed(problem.actuator, {{Key::nd_omega, 1.78}});
+    const model::Specification home = changed(problem.actuator, {{percuss::model::membrane::key::nd_omega, 1.78}});
     const flow::System system = evaluator.system(home);
     const orbit::Orbit orbit = period_three(system);
     REQUIRE(orbit.ok());
@@ -87,7 +88,8 @@ TEST_CASE("the window of the period-3 motion, carried to another design, is the 
     CHECK(intruder.upper.kind == boundary::Kind::grazing);
     CHECK(intruder.upper.omega == test::relative(1.8613422725, 1e-9));
 
-    const std::vector<Key> keys = {Key::nd_gap, Key::nd_stiffness, Key::nd_voltage};
+    const std::vector<Key> keys = {percuss::model::membrane::key::nd_gap, percuss::model::membrane::key::nd_stiffness,
+                                   percuss::model::membrane::key::nd_voltage};
     const design::WindowAt here = design::window_at(system, intruder, home, keys);
     REQUIRE(here.status == design::WindowAt::Status::found);
     CHECK(here.lower == test::relative(intruder.lower.omega, 1e-11));
@@ -107,14 +109,15 @@ TEST_CASE("the window of the period-3 motion, carried to another design, is the 
         CHECK(here.d_upper[k] == test::relative((up.upper - down.upper) / (2.0 * h), 1e-5));
     }
 
-    const model::Specification away = changed(home, {{Key::nd_gap, 0.11}});
+    const model::Specification away = changed(home, {{percuss::model::membrane::key::nd_gap, 0.11}});
     const design::WindowAt carried = design::window_at(evaluator.system(away), intruder, away, {});
     REQUIRE(carried.status == design::WindowAt::Status::found);
     CHECK(carried.lower < carried.upper);
     // Found afresh at the middle of the window there.
     const double middle = 0.5 * (carried.lower + carried.upper);
     design::Problem look = sampled(256);
-    const Evaluation e = test::evaluate(look, {{Key::nd_gap, 0.11}, {Key::nd_omega, middle}});
+    const Evaluation e = test::evaluate(
+        look, {{percuss::model::membrane::key::nd_gap, 0.11}, {percuss::model::membrane::key::nd_omega, middle}});
     const auto is_three = [](const design::Attractor& a) { return a.period == 3; };
     const auto three = std::find_if(e.uniqueness.attractors.begin(), e.uniqueness.attractors.end(), is_three);
     REQUIRE(three != e.uniqueness.attractors.end());
@@ -128,7 +131,7 @@ TEST_CASE("the band in which the defaults are alone lies between the period-3 mo
     const design::Problem problem = sampled(128);
     design::Demand demand;
     demand.quantities = {Quantity::peak_force, Quantity::band_lower, Quantity::band_upper};
-    demand.gradients = {Key::nd_gap, Key::nd_voltage};
+    demand.gradients = {percuss::model::membrane::key::nd_gap, percuss::model::membrane::key::nd_voltage};
     demand.error_estimates = true;
     const design::Evaluator evaluator(problem);
     const Evaluation e = evaluator.evaluate(demand);
@@ -160,22 +163,22 @@ TEST_CASE("tier 1 alone puts the lower end of the band at the flip of the motion
 }
 
 TEST_CASE("tier 3: the low-loss design is moved away from the motion that refutes it, at a price") {
-    study::StudyProblem problem = test::shipped_problem("low-loss");
+    verbs::StudyProblem problem = test::shipped_problem("low-loss");
     problem.optimiser.samples = 8;
     problem.optimiser.starts = 1;
     problem.design.sampling.starts = 256;
 
     problem.design.single_stable = design::SingleStable::sampled;
-    const auto refuted = study::run_optimise(problem, nullptr, {}, {});
-    CHECK(refuted.status == "not-certified");
-    CHECK(refuted.ending == study::Ending::not_certified);
+    const auto refuted = verbs::run_optimise(problem, nullptr, {}, {});
+    CHECK(refuted.status == verbs::OptimiseStatus::not_certified);
+    CHECK(refuted.ending == verbs::Ending::not_certified);
     REQUIRE(refuted.counterexamples.size() == 1);
     CHECK(refuted.counterexamples[0].period == 4);
     CHECK(refuted.best.uniqueness.verdict == Verdict::not_unique);
 
     problem.design.single_stable = design::SingleStable::refuted;
-    const auto alone = study::run_optimise(problem, nullptr, {}, {});
-    CHECK(alone.status == "optimal");
+    const auto alone = verbs::run_optimise(problem, nullptr, {}, {});
+    CHECK(alone.status == verbs::OptimiseStatus::optimal);
     CHECK(alone.best.uniqueness.verdict == Verdict::unique);
     CHECK(alone.best.uniqueness.tier == 2);
     CHECK(alone.kkt_residual < 1e-6);
@@ -185,7 +188,7 @@ TEST_CASE("tier 3: the low-loss design is moved away from the motion that refute
     CHECK(force < alone.objective_unrefuted);
     CHECK(force == test::relative(15.4960, 1e-4));
     const auto window = std::find_if(alone.limits.begin(), alone.limits.end(),
-                                     [](const study::LimitReport& limit) { return limit.name == "omega"; });
+                                     [](const verbs::LimitReport& limit) { return limit.name == "omega"; });
     REQUIRE(window != alone.limits.end());
     CHECK(window->active);
     CHECK(window->multiplier > 0.0);

@@ -2,11 +2,12 @@
 // the problem file of its figure.
 
 #include "design_cases.hpp"
+#include "model/membrane/membrane.hpp"
 #include "reference_values.hpp"
 #include "relative.hpp"
-#include "study/branch.hpp"
-#include "study/locus.hpp"
-#include "study/sweep.hpp"
+#include "verbs/branch/branch.hpp"
+#include "verbs/locus/locus.hpp"
+#include "verbs/sweep/sweep.hpp"
 
 #include <doctest/doctest.h>
 
@@ -48,26 +49,24 @@ double amplitude(const Evaluation& e) { return e.value(Quantity::amplitude); }
 }  // namespace
 
 TEST_CASE("figure 6a: without the stop both sweeps are one curve") {
-    study::StudyProblem problem = test::shipped_problem("wu2022-fig6");
+    verbs::StudyProblem problem = test::shipped_problem("wu2022-fig6");
     problem.design.actuator.law = model::StopLaw::none;
-    const study::SweepStudyResult sweep =
-        study::run_sweep(problem, {.from = 1.2, .to = 3.0, .steps = 45}, nullptr, {}, {});
-    CHECK(sweep.ending == study::Ending::verified);
+    const verbs::SweepResult sweep = verbs::run_sweep(problem, {.from = 1.2, .to = 3.0, .steps = 45}, nullptr, {}, {});
+    CHECK(sweep.ending == verbs::Ending::verified);
     CHECK(sweep.comparison.compared == 46);
     CHECK(sweep.comparison.coincide());
     CHECK(sweep.comparison.largest < 1e-6);
 }
 
 TEST_CASE("figure 6b: forward the resonance lies far above the backward one") {
-    const study::StudyProblem problem = test::shipped_problem("wu2022-fig6");
+    const verbs::StudyProblem problem = test::shipped_problem("wu2022-fig6");
     // Beside the edge few states lead to the weak motion: already steps of 0.02 throw it off at 1.94.
-    const study::SweepStudyResult sweep =
-        study::run_sweep(problem, {.from = 1.9, .to = 2.6, .steps = 70}, nullptr, {}, {});
+    const verbs::SweepResult sweep = verbs::run_sweep(problem, {.from = 1.9, .to = 2.6, .steps = 70}, nullptr, {}, {});
     REQUIRE(sweep.directions.size() == 2);
     const double jump[] = {test::boundary_reference::fold_upper, test::boundary_reference::grazing_upper};
     for (std::size_t i = 0; i < 2; ++i) {
         CAPTURE(i);
-        const study::SweepDirection& direction = sweep.directions[i];
+        const verbs::SweepDirection& direction = sweep.directions[i];
         REQUIRE(direction.jumps.size() == 1);
         const double before = direction.points[direction.jumps[0].before].omega;
         const double after = direction.points[direction.jumps[0].after].omega;
@@ -78,10 +77,10 @@ TEST_CASE("figure 6b: forward the resonance lies far above the backward one") {
     // Solved for, in place of swept.
     const Evaluation backward = test::evaluate(figure(6));
     CHECK(std::abs(edge(backward) - test::boundary_reference::grazing_upper) < 6e-12);
-    study::BranchStudy range;
+    verbs::BranchOptions range;
     range.from = 4.0;
     range.to = 1.2;
-    const study::BranchStudyResult branch = study::run_branch(problem, range, {}, {});
+    const verbs::BranchResult branch = verbs::run_branch(problem, range, {}, {});
     REQUIRE(branch.branches.size() == 1);
     double highest_fold = 0.0;
     for (const branch::BoundaryPoint& b : branch.branches[0].boundaries) {
@@ -92,13 +91,13 @@ TEST_CASE("figure 6b: forward the resonance lies far above the backward one") {
 
 TEST_CASE("figure 7: below a voltage of about 0.2 nothing strikes, above it edge and force grow") {
     for (double voltage : {0.19, 0.195}) {
-        const Evaluation e = test::evaluate(figure(7), {{Key::nd_voltage, voltage}});
+        const Evaluation e = test::evaluate(figure(7), {{percuss::model::membrane::key::nd_voltage, voltage}});
         CHECK(e.status == EvaluationStatus::no_impact);
         CHECK(e.operating_point.edge_kind == EdgeKind::none);
     }
     std::vector<double> voltages;
     for (int i = 20; i <= 50; i += 2) { voltages.push_back(0.01 * i); }
-    const auto found = row(7, Key::nd_voltage, voltages);
+    const auto found = row(7, percuss::model::membrane::key::nd_voltage, voltages);
     for (std::size_t i = 1; i < found.size(); ++i) {
         CAPTURE(voltages[i]);
         CHECK(edge(found[i]) > edge(found[i - 1]));
@@ -106,7 +105,7 @@ TEST_CASE("figure 7: below a voltage of about 0.2 nothing strikes, above it edge
     }
     for (const auto& [voltage, omega, known] : reference::vs_phi_pp) {
         CAPTURE(voltage);
-        const auto e = row(7, Key::nd_voltage, {voltage}).front();
+        const auto e = row(7, percuss::model::membrane::key::nd_voltage, {voltage}).front();
         CHECK(std::abs(edge(e) - omega) < 1e-6);
         CHECK(std::abs(force(e) - known) < 1e-5);
     }
@@ -115,7 +114,7 @@ TEST_CASE("figure 7: below a voltage of about 0.2 nothing strikes, above it edge
 TEST_CASE("figure 7: the edge followed through the onset and on to the lower end of the impacts") {
     for (double from : {0.5, 0.4}) {
         CAPTURE(from);
-        const study::LocusStudyResult locus = study::run_locus(
+        const verbs::LocusResult locus = verbs::run_locus(
             test::shipped_problem("wu2022-fig7"),
             {.kind = boundary::Kind::grazing, .along = Key::nd_voltage, .from = from, .to = 0.19}, {}, {});
         REQUIRE(locus.curves.size() == 1);  // one curve: both grazing points it could begin with are on it
@@ -141,7 +140,7 @@ TEST_CASE("figure 7: the edge followed through the onset and on to the lower end
 }
 
 TEST_CASE("figure 9: edge and force grow with the layers, the amplitude hardly changes") {
-    const auto found = row(9, Key::nd_layers, {1, 2, 3, 4, 5, 6, 7, 8});
+    const auto found = row(9, percuss::model::membrane::key::nd_layers, {1, 2, 3, 4, 5, 6, 7, 8});
     for (std::size_t i = 1; i < found.size(); ++i) {
         CAPTURE(i);
         CHECK(edge(found[i]) > edge(found[i - 1]));
@@ -155,7 +154,7 @@ TEST_CASE("figure 9: edge and force grow with the layers, the amplitude hardly c
 TEST_CASE("figure 11: the edge falls with the gap, the force drops and stays") {
     std::vector<double> gaps = {0.02};
     for (int i = 4; i <= 20; i += 2) { gaps.push_back(0.01 * i); }
-    const auto found = row(11, Key::nd_gap, gaps);
+    const auto found = row(11, percuss::model::membrane::key::nd_gap, gaps);
     for (std::size_t i = 1; i < found.size(); ++i) {
         CAPTURE(gaps[i]);
         CHECK(edge(found[i]) < edge(found[i - 1]));
@@ -165,12 +164,13 @@ TEST_CASE("figure 11: the edge falls with the gap, the force drops and stays") {
     CHECK(force(found[0]) - force(found[1]) > 1.0);
     for (const auto& [gap, known] : reference::peak_force_vs_gap) {
         CAPTURE(gap);
-        CHECK(std::abs(force(row(11, Key::nd_gap, {gap}).front()) - known) < 1e-5);
+        CHECK(std::abs(force(row(11, percuss::model::membrane::key::nd_gap, {gap}).front()) - known) < 1e-5);
     }
 }
 
 TEST_CASE("figure 13: the edge does not move with the stiffness, the force grows more than tenfold") {
-    const auto found = row(13, Key::nd_stiffness, {100, 250, 500, 1000, 2500, 5000, 10000, 25000});
+    const auto found =
+        row(13, percuss::model::membrane::key::nd_stiffness, {100, 250, 500, 1000, 2500, 5000, 10000, 25000});
     for (std::size_t i = 0; i < found.size(); ++i) {
         CAPTURE(i);
         CHECK(std::abs(edge(found[i]) - reference::omega) < 6e-12);
@@ -189,12 +189,14 @@ TEST_CASE("figures 8, 10, 12, 14: the measured trends in SI units") {
         design::Problem problem = figure(8);
         problem.actuator.set(Key::stop_stiffness, stop == 0 ? 10.6e3 : 51.9e3);
         std::vector<double> forces;
-        for (double v : volts) { forces.push_back(force(test::evaluate(problem, {{Key::drive_voltage, v}}))); }
+        for (double v : volts) {
+            forces.push_back(force(test::evaluate(problem, {{percuss::model::membrane::key::drive_voltage, v}})));
+        }
         CHECK(std::abs(forces.front() - ends[stop][0]) < 6e-3);
         CHECK(std::abs(forces.back() - ends[stop][1]) < 6e-3);
         for (std::size_t i = 1; i < forces.size(); ++i) { CHECK(forces[i] > forces[i - 1]); }
     }
-    const auto layers = row(10, Key::layers, {1, 2, 3});
+    const auto layers = row(10, percuss::model::membrane::key::layers, {1, 2, 3});
     CHECK(force(layers[1]) > force(layers[0]));
     CHECK(force(layers[2]) > force(layers[1]));
     const auto gaps = row(12, Key::stop_gap, {0.4e-3, 0.8e-3, 1.2e-3, 1.6e-3});

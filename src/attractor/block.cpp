@@ -34,7 +34,7 @@ public:
         : exact_{systems.exact},
           scout_{systems.scout},
           options_(options),
-          scale_(half_widths(box, systems.exact.states())),
+          scale_(distance_scale(systems.exact, box)),
           known_before_(known.size()),
           known_(known) {
         for (const auto& orbit : known_) { traps_.push_back(&orbit->trap); }
@@ -57,12 +57,12 @@ public:
             ++cycle;
             if (cycle >= options_.max_cycles && (cycle - options_.max_cycles) % options_.memory == 0) { retire(); }
             if (cycle < look) { continue; }
-            if (options_.stop_requested && options_.stop_requested()) {
-                result_.stopped = true;
+            if (options_.cancelled && options_.cancelled()) {
+                result_.cancelled = true;
                 break;
             }
             search();
-            if (options_.stop_at_new && known_.size() > known_before_) { break; }
+            if (options_.end_at_new && known_.size() > known_before_) { break; }
             look = next_look(cycle);
         }
         return finish();

@@ -5,8 +5,8 @@
 
 #include "attractor/box.hpp"
 #include "attractor/known.hpp"
+#include "numerics/cancel.hpp"
 
-#include <functional>
 #include <vector>
 
 namespace percuss::attractor {
@@ -14,11 +14,11 @@ namespace percuss::attractor {
 inline constexpr int block_size = 64;
 
 struct FollowOptions {
-    int max_cycles = 1000;     ///< budget of each start
-    int longest_period = 12;   ///< of orbits looked for while following
-    int memory = 256;          ///< strobed states kept of each start
-    bool stop_at_new = false;  ///< end once an orbit was found that was not known before
-    std::function<bool()> stop_requested{};
+    int max_cycles = 1000;    ///< budget of each start
+    int longest_period = 12;  ///< of orbits looked for while following
+    int memory = 256;         ///< strobed states kept of each start
+    bool end_at_new = false;  ///< end once an orbit was found that was not known before
+    numerics::CancelRequest cancelled{};
 };
 
 /// What became of one start.
@@ -36,7 +36,7 @@ struct Follower {
 };
 
 struct BlockResult {
-    bool stopped = false;  ///< by request: nothing else means anything
+    bool cancelled = false;  ///< by request: nothing else means anything
     std::vector<Follower> followers;
     KnownOrbits found;  ///< in the order of discovery, none of them known before
     double cycles = 0.0;

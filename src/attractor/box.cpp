@@ -47,6 +47,33 @@ double settled_amplitude(const flow::System& system, const flow::State& from) {
     return 0.5 * (result.observables.x_max.value - result.observables.x_min.value);
 }
 
+flow::State middle(const Box& box) {
+    flow::State y{};
+    for (std::size_t k = 0; k < y.size(); ++k) { y[k] = box.lower[k] + 0.5 * (box.upper[k] - box.lower[k]); }
+    return y;
+}
+
+/// What one cycle from a state moves; zero when it cannot be followed. Not counted as work.
+flow::State size_of_motion(const flow::System& system, const flow::State& from) {
+    flow::System uncounted = system;
+    uncounted.cost = nullptr;
+    flow::Request request;
+    request.state = from;
+    request.duration = 2.0 * pi;
+    request.max_events = most_contact_events;
+    request.observe = flow::observe_extrema;
+    flow::Result result;
+    uncounted.run(request, result);
+    if (result.status != flow::Status::ok) { return {}; }
+    const double reach = 0.5 * (result.observables.x_max.value - result.observables.x_min.value);
+    const flow::StateRange internal = system.integrator->internal_range(system.parameters, reach);
+    flow::State size{};
+    for (std::size_t k = 0; k < size.size(); ++k) { size[k] = 0.5 * (internal.upper[k] - internal.lower[k]); }
+    size[0] = reach;
+    size[1] = reach * system.omega();
+    return size;
+}
+
 }  // namespace
 
 Box ensemble_box(const flow::System& system, double amplitude) {
@@ -109,6 +136,20 @@ flow::State half_widths(const Box& box, int states) {
         widths[index(k)] = half > 0.0 ? half : 1.0;
     }
     return widths;
+}
+
+flow::State distance_scale(const flow::System& system, const Box& box) {
+    // Traps, recurrences and the comparison of orbits have thresholds down to 1e-8 of this scale. Where it was that of
+    // a box narrower than 1e-8 they lay below what a state at order one resolves: no motion was ever captured, and one
+    // orbit counted as several. With a tenth of the motion they stay above 1e-10 of it; boxes as wide as ensemble_box
+    // makes them exceed it by far, so that the share does not enter there.
+    constexpr double least_share = 0.1;
+    flow::State scale = half_widths(box, system.states());
+    const flow::State size = size_of_motion(system, middle(box));
+    for (int k = 0; k < system.states(); ++k) {
+        scale[index(k)] = std::max(scale[index(k)], least_share * size[index(k)]);
+    }
+    return scale;
 }
 
 flow::State start_state(const Box& box, int states, std::uint64_t seed, long i) {

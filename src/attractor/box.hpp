@@ -31,8 +31,14 @@ double amplitude_to_expect(const flow::System& system);
 /// Throws std::invalid_argument unless every interval is finite and not reversed, and at least one has a length.
 void validate(const Box& box, int states);
 
-/// Half the length of each interval, one where it has none: what distances are measured in.
+/// Half the length of each interval, one where it has none.
 flow::State half_widths(const Box& box, int states);
+
+/// What distances between states are measured in, one length per state: half the length of each interval of the box
+/// that starts come from, but no less than a tenth of the size of the motions themselves, which need not stay in it.
+/// That size is what the drive makes of one cycle from the middle of the box: half the range of x, that times omega,
+/// and the range of the other states meanwhile.
+flow::State distance_scale(const flow::System& system, const Box& box);
 
 /// Start number i >= 0 of a seed, uniform in the box and independent of the others: entry k is made of output number
 /// max_states i + k of splitmix64 (G. Steele, D. Lea, C. Flood, Fast splittable pseudorandom number generators, OOPSLA

@@ -61,14 +61,14 @@ void in_parallel(long count, int jobs, const Work& work) {
 /// The blocks of an ensemble.
 class Blocks {
 public:
-    Blocks(const Systems& systems, const Box& box, const EnsembleOptions& options, bool stop_at_new)
+    Blocks(const Systems& systems, const Box& box, const EnsembleOptions& options, bool end_at_new)
         : systems_(systems),
           box_(box),
           options_(options) {
         follow_.max_cycles = options.max_cycles;
         follow_.longest_period = options.longest_period;
-        follow_.stop_at_new = stop_at_new;
-        follow_.stop_requested = options.stop_requested;
+        follow_.end_at_new = end_at_new;
+        follow_.cancelled = options.cancelled;
     }
 
     [[nodiscard]] long count() const { return (options_.starts + block_size - 1) / block_size; }
@@ -76,9 +76,9 @@ public:
     [[nodiscard]] static long first(long block) { return block * block_size; }
 
     BlockResult follow(long block, const KnownOrbits& known) {
-        if (options_.stop_requested && options_.stop_requested()) {
+        if (options_.cancelled && options_.cancelled()) {
             BlockResult none;
-            none.stopped = true;
+            none.cancelled = true;
             return none;
         }
         Starts starts;
@@ -128,20 +128,20 @@ std::vector<int> put_together(const BlockResult& block, std::size_t known_before
 
 void count_shares(Ensemble& ensemble) {
     for (const int motion : ensemble.led_to) {
-        if (motion >= 0) { ++ensemble.motions[index(motion)].starts; }
+        if (motion >= 0) { ++ensemble.attractors[index(motion)].starts; }
     }
     if (ensemble.starts == 0) { return; }
-    for (Motion& motion : ensemble.motions) { motion.share = share_of(motion.starts, ensemble.starts); }
+    for (Attractor& motion : ensemble.attractors) { motion.share = share_of(motion.starts, ensemble.starts); }
     ensemble.missed_share_bound = share_bound(ensemble.unclassified, ensemble.starts);
 }
 
 }  // namespace
 
-Ensemble find_motions(const Systems& systems, const Box& box, const EnsembleOptions& options,
-                      std::span<const orbit::Orbit> given) {
+Ensemble find_attractors(const Systems& systems, const Box& box, const EnsembleOptions& options,
+                         std::span<const orbit::Orbit> given) {
     check(systems, box, options, given);
     CountedSystems counted(systems);
-    const flow::State scale = half_widths(box, systems.exact.states());
+    const flow::State scale = distance_scale(systems.exact, box);
     Ensemble ensemble;
     ensemble.box = box;
 
@@ -164,8 +164,8 @@ Ensemble find_motions(const Systems& systems, const Box& box, const EnsembleOpti
     for (std::size_t b = 0; b < results.size(); ++b) {
         const BlockResult& block = results[b];
         ensemble.cycles += block.cycles;
-        if (block.stopped) {
-            ensemble.status = Ensemble::Status::stopped;
+        if (block.cancelled) {
+            ensemble.status = Ensemble::Status::cancelled;
             continue;
         }
         const auto numbers = put_together(block, b == 0 ? given_count : common, all);
@@ -180,17 +180,17 @@ Ensemble find_motions(const Systems& systems, const Box& box, const EnsembleOpti
     LeftoverJudge judge(counted.systems, box, all, options.leftovers);
     std::vector<std::pair<std::size_t, int>> aperiodic;
     for (const Leftover& leftover : leftovers) {
-        if (options.stop_requested && options.stop_requested()) {
-            ensemble.status = Ensemble::Status::stopped;
+        if (options.cancelled && options.cancelled()) {
+            ensemble.status = Ensemble::Status::cancelled;
             break;
         }
         const LeftoverJudge::Verdict verdict = judge.judge(*leftover.history);
         ensemble.led_to[leftover.start] = verdict.orbit;
         if (verdict.aperiodic >= 0) { aperiodic.emplace_back(leftover.start, verdict.aperiodic); }
     }
-    for (const auto& orbit : all) { ensemble.motions.push_back(measure(counted.exact, orbit->orbit)); }
+    for (const auto& orbit : all) { ensemble.attractors.push_back(measure(counted.exact, orbit->orbit)); }
     for (const auto& [start, motion] : aperiodic) { ensemble.led_to[start] = static_cast<int>(all.size()) + motion; }
-    ensemble.motions.insert(ensemble.motions.end(), judge.aperiodic().begin(), judge.aperiodic().end());
+    ensemble.attractors.insert(ensemble.attractors.end(), judge.aperiodic().begin(), judge.aperiodic().end());
 
     ensemble.unclassified = std::count(ensemble.led_to.begin(), ensemble.led_to.end(), -1);
     ensemble.cycles += counted.cost.periods();
@@ -203,22 +203,22 @@ namespace {
 
 /// What one block has to say against the given orbit, which is number 0 of what is known.
 struct Objection {
-    std::optional<Motion> other;
+    std::optional<Attractor> other;
     long unclassified = 0;
     double cycles = 0.0;
-    bool stopped = false;
+    bool cancelled = false;
 };
 
 Objection object(const Systems& systems, const Box& box, BlockResult block, const KnownOrbits& known,
                  const EnsembleOptions& options) {
     CountedSystems counted(systems);
     Objection objection;
-    objection.stopped = block.stopped;
+    objection.cancelled = block.cancelled;
     KnownOrbits all = known;
     all.insert(all.end(), block.found.begin(), block.found.end());
     LeftoverJudge judge(counted.systems, box, all, options.leftovers);
     for (const Follower& follower : block.followers) {
-        if (block.stopped || all.size() > known.size() || !judge.aperiodic().empty()) { break; }
+        if (block.cancelled || all.size() > known.size() || !judge.aperiodic().empty()) { break; }
         if (follower.fate == Fate::failed) { ++objection.unclassified; }
         if (follower.fate != Fate::unsettled) { continue; }
         const auto verdict = judge.judge(follower.history);
@@ -240,7 +240,7 @@ Refutation refute(const Systems& systems, const orbit::Orbit& given, const Box& 
     CountedSystems counted(systems);
     Refutation refutation;
     refutation.box = box;
-    const KnownOrbits known = {make_known(counted.systems, given, half_widths(box, systems.exact.states()))};
+    const KnownOrbits known = {make_known(counted.systems, given, distance_scale(systems.exact, box))};
     refutation.cycles = counted.cost.periods();
     Blocks blocks(systems, box, options, true);
     for (long begun = 0; begun < blocks.count(); begun += options.jobs) {
@@ -252,8 +252,8 @@ Refutation refute(const Systems& systems, const orbit::Orbit& given, const Box& 
         for (long i = 0; i < together; ++i) {
             Objection& objection = objections[index(i)];
             refutation.cycles += objection.cycles;
-            if (objection.stopped) {
-                refutation.status = Refutation::Status::stopped;
+            if (objection.cancelled) {
+                refutation.status = Refutation::Status::cancelled;
                 return refutation;
             }
             refutation.starts += blocks.size(begun + i);

@@ -3,7 +3,8 @@
 namespace percuss::attractor {
 namespace {
 
-/// A long period is believed only when the motion recurs as nearly as this, in units of the box.
+/// A long period is believed only when the motion recurs as nearly as this, in units of the box: the more periods are
+/// compared, the nearer a chaotic motion recurs to one of them by chance, and a try costs Newton steps over all of it.
 constexpr double long_recurrence = 1e-3;
 /// Shorter histories say little about where a motion goes.
 constexpr std::size_t shortest_history = 32;

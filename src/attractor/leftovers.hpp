@@ -3,9 +3,9 @@
 /// The starts that no periodic orbit has captured within the budget: long periods, aperiodic motions, and what remains
 /// unclassified.
 
+#include "attractor/attractor.hpp"
 #include "attractor/block.hpp"
 #include "attractor/cloud.hpp"
-#include "attractor/motion.hpp"
 
 #include <vector>
 
@@ -22,7 +22,7 @@ class LeftoverJudge {
 public:
     LeftoverJudge(const Systems& systems, const Box& box, KnownOrbits& known, const LeftoverOptions& options)
         : systems_(systems),
-          scale_(half_widths(box, systems.exact.states())),
+          scale_(distance_scale(systems.exact, box)),
           known_(known),
           options_(options) {}
 
@@ -36,7 +36,7 @@ public:
     /// strobed states of an aperiodic motion met before is that motion.
     Verdict judge(const std::vector<flow::State>& history);
 
-    [[nodiscard]] const std::vector<Motion>& aperiodic() const { return aperiodic_; }
+    [[nodiscard]] const std::vector<Attractor>& aperiodic() const { return aperiodic_; }
 
 private:
     /// Where a motion that was followed on has been, and what it was.
@@ -54,7 +54,7 @@ private:
     flow::State scale_;
     KnownOrbits& known_;
     const LeftoverOptions& options_;
-    std::vector<Motion> aperiodic_;
+    std::vector<Attractor> aperiodic_;
     std::vector<Path> paths_;
     int runs_ = 0;
 };

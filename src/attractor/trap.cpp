@@ -17,13 +17,17 @@ using numerics::SmallVector;
 using std::numbers::pi;
 
 /// Shells are tried from the first of these radii that passes, doubling up to the size of the box.
+/// An orbit whose linear regime is smaller than the smallest is taken as beyond capture: ten times the noise below.
 constexpr double first_radius = 1e-4;
 constexpr double smallest_radius = 1e-7;
 constexpr double largest_radius = 1.0;
-/// Below this distance the integration error, not the dynamics, decides how a motion goes on.
+/// Below this distance the integration error of the scout (relative tolerance 1e-8), not the dynamics, decides how a
+/// motion goes on.
 constexpr double noise = 1e-8;
-/// Multipliers below this one are not asked to contract any faster.
+/// Multipliers below this one are not asked to contract any faster: as s -> 0 the norm, which has D^T Q D / s^2, would
+/// grow without bound, and the ellipsoid with it flatten.
 constexpr double fast_enough = 0.04;
+/// Besides axes and eigenvectors: a kink of the map (a contact about to graze) need not lie across any of these.
 constexpr int random_directions = 12;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }

@@ -29,9 +29,8 @@ struct Boundary {
     SolveStatus status = SolveStatus::not_run;
     Kind kind = Kind::none;
     double omega = 0.0;
-    flow::State state{};              ///< of the orbit, at map.phase
-    numerics::SmallMatrix monodromy;  ///< of the map
-    double theta_contact = 0.0;       ///< grazing: phase of the largest displacement
+    flow::State state{};         ///< of the orbit, at map.phase
+    double theta_contact = 0.0;  ///< grazing: phase of the largest displacement
     double residual = 0.0;
     std::vector<double> d_omega;       ///< derivative of omega along each direction
     std::vector<flow::State> d_state;  ///< derivative of the orbit's state, following the boundary
@@ -39,12 +38,8 @@ struct Boundary {
     [[nodiscard]] bool ok() const { return status == SolveStatus::converged; }
 };
 
-/// Newton on {P(y) - y = 0, test = 0} for (y, omega). Tests: grazing, max x - x_stop by the envelope theorem; fold and
-/// flip, the bordered determinant-like function of the minimally augmented system (W. Govaerts, Numerical Methods for
-/// Bifurcations of Dynamical Equilibria, SIAM 2000), whose gradient takes the second derivative of P along the null
-/// vector as a central difference of exact derivatives; torus, |mu|^2 - 1 of the complex multiplier nearest the circle,
-/// differentiated by left and right eigenvectors in the same way.
-/// The stop mode of `map` decides whether the orbit is free or impacting; grazing needs a free one.
+/// A boundary of the orbits of a return map in (y, omega): the equations of boundary/critical.hpp for a motion of free
+/// form, or strobed where the map's stop is hybrid; grazing needs a free one.
 Boundary solve_boundary(const flow::System& system, const orbit::ReturnMap& map, Kind kind, const flow::State& guess,
                         double omega, std::span<const flow::ParameterVector> directions);
 
@@ -52,5 +47,7 @@ Boundary solve_boundary(const flow::System& system, const orbit::ReturnMap& map,
 /// half-cycle or full map taken with observe_extrema. `columns` of derivative as in orbit::Observed.
 orbit::Observed clearance(const flow::System& system, const orbit::ReturnMap& map, const orbit::Image& image,
                           std::span<const flow::ParameterVector> directions);
+/// The phase of that displacement; where half a cycle reaches further to the other side, half a cycle later.
+double phase_of_clearance(const flow::System& system, const orbit::ReturnMap& map, const orbit::Image& image);
 
 }  // namespace percuss::boundary

@@ -1,5 +1,7 @@
 #include "branch/branch.hpp"
 
+#include <algorithm>
+
 namespace percuss::branch {
 
 std::string_view to_string(End end) {
@@ -12,6 +14,11 @@ std::string_view to_string(End end) {
         case End::budget: return "budget";
     }
     return "not run";
+}
+
+bool Branch::neutral() const {
+    return !points.empty() &&
+           std::all_of(points.begin(), points.end(), [](const Point& point) { return point.neutral; });
 }
 
 }  // namespace percuss::branch

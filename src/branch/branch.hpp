@@ -44,6 +44,8 @@ struct Branch {
     std::string begin_reason;  ///< one sentence where lost
     std::string end_reason;
     long solves = 0;  ///< orbits and boundaries solved for
+    /// Motions without damping: no torus points are looked for, and none of the motions is called stable.
+    [[nodiscard]] bool neutral() const;
 };
 
 }  // namespace percuss::branch

@@ -20,20 +20,20 @@ using std::numbers::pi;
 /// with the square of it.
 constexpr double small_speed = 1e-6;
 
-double slow(const flow::Family& family, double parameter, const TraceOptions& options) {
+double slow(const flow::ParameterFamily& family, double parameter, const TraceOptions& options) {
     return small_speed * options.size * family.at(parameter).omega();
 }
 
 /// The sequence with one contact at a very small speed, next to its grazing motion.
-std::optional<Standing> stand_near(const flow::Family& family, const Motion& grazing, double parameter, int contact,
-                                   const TraceOptions& options) {
+std::optional<CurvePoint> point_beside_grazing(const flow::ParameterFamily& family, const Motion& grazing,
+                                               double parameter, int contact, const TraceOptions& options) {
     Motion motion = grazing;
     motion.sequence.contacts[static_cast<std::size_t>(contact)].speed = slow(family, parameter, options);
     Piece piece(family, motion, options.size, options.steps);
     if (!piece.start_with_speed(motion, parameter, contact)) { return std::nullopt; }
     Look seen = look(family, piece.motion(), piece.parameter());
     if (!seen.ok()) { return std::nullopt; }
-    return Standing{piece.point(), piece.slope(), std::move(seen.point)};
+    return CurvePoint{piece.point(), piece.slope(), std::move(seen.point)};
 }
 
 /// The same motion without one of its contacts.
@@ -54,8 +54,10 @@ Motion without(const flow::System& system, const Motion& motion, int contact, co
 }
 
 /// The way along the branch on which the motion has the contacts of its form and no other.
-std::optional<double> real_side(const flow::Family& family, const Motion& motion, double parameter,
+std::optional<double> real_side(const flow::ParameterFamily& family, const Motion& motion, double parameter,
                                 const TraceOptions& options, double preferred) {
+    // Scaled steps: 1e-3 is far enough from grazing for the hybrid flow to tell contact from none and mostly near
+    // enough to meet no other boundary; a longer and a shorter one are tried where it is not.
     for (double step : {1e-3, 1e-2, 1e-4}) {
         for (double direction : {preferred, -preferred}) {
             Piece piece(family, motion, options.size, options.steps);
@@ -63,7 +65,7 @@ std::optional<double> real_side(const flow::Family& family, const Motion& motion
             piece.set_step(step);
             if (!piece.advance()) { continue; }
             const Look seen = look(family, piece.motion(), piece.parameter());
-            const bool leaves = contact_leaving(piece.motion()) != no_contact;
+            const bool leaves = contact_leaving(piece.motion()).has_value();
             if (seen.ok() && !leaves && seen.point.contacts.size() == motion.contacts()) { return direction; }
         }
     }
@@ -136,27 +138,29 @@ std::optional<Motion> old_form_at(const flow::System& system, const Motion& old_
 
 /// The motion of the old form at the grazing point. Where the hybrid flow meets the new contact there, its multipliers
 /// are no longer those of the old form, and the motion a little before stands for it.
-std::optional<Standing> stand_before(const flow::Family& family, Piece& piece, const Vector& found,
-                                     const Motion& old_form, double parameter) {
+std::optional<CurvePoint> point_before_grazing(const flow::ParameterFamily& family, Piece& piece, const Vector& found,
+                                               const Motion& old_form, double parameter) {
     Look here = look(family, old_form, parameter);
     if (here.status == Look::Status::flow_failed) { return std::nullopt; }
     if (old_form.form != Form::sequence || here.point.contacts.size() == old_form.contacts()) {
-        return Standing{found, piece.slope(), std::move(here.point)};
+        return CurvePoint{found, piece.slope(), std::move(here.point)};
     }
     const double behind = (piece.point() - found).norm();
+    // As near to the corner as the hybrid flow allows: contacts of a speed below its resolution are not told.
     for (const double more : {1e-6, 1e-5, 1e-4, 1e-3}) {
         const auto earlier = piece.probe(-(behind + more));
         if (!earlier) { continue; }
         Look there = look(family, earlier->motion, earlier->parameter);
         if (there.ok() && there.point.contacts.size() == old_form.contacts()) {
-            return Standing{piece.scaled(earlier->motion, earlier->parameter), earlier->slope, std::move(there.point)};
+            return CurvePoint{piece.scaled(earlier->motion, earlier->parameter), earlier->slope,
+                              std::move(there.point)};
         }
     }
     return std::nullopt;
 }
 
 /// The corner's own point: the motion beside it, at the grazing point's parameter.
-Corner corner_at(const flow::Family& family, const Point& near, double parameter, int contact) {
+Corner corner_at(const flow::ParameterFamily& family, const Point& near, double parameter, int contact) {
     Corner corner;
     corner.at = near;
     corner.at.parameter = parameter;
@@ -168,8 +172,8 @@ Corner corner_at(const flow::Family& family, const Point& near, double parameter
 
 }  // namespace
 
-int contact_leaving(const Motion& motion) {
-    int leaving = no_contact;
+std::optional<int> contact_leaving(const Motion& motion) {
+    std::optional<int> leaving;
     double lowest = 0.0;
     for (std::size_t i = 0; i < motion.contacts(); ++i) {
         if (motion.sequence.contacts[i].speed <= lowest) {
@@ -180,8 +184,8 @@ int contact_leaving(const Motion& motion) {
     return leaving;
 }
 
-std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, const Standing& last, int contact,
-                                    const TraceOptions& options) {
+std::optional<Corner> leave_contact(const flow::ParameterFamily& family, Piece& piece, const CurvePoint& last,
+                                    int contact, const TraceOptions& options) {
     const auto at = static_cast<Eigen::Index>(contact) * piece.motion().sequence.unknowns_per_contact(family.base);
     const double before = last.u[at];
     const double beyond = piece.point()[at];
@@ -195,7 +199,7 @@ std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, co
     if (!grazing.ok()) { return std::nullopt; }
     const Vector found = piece.scaled(grazing.motion, grazing.parameter);
     if (!place_of(found, last.u, piece.point()).between()) { return std::nullopt; }
-    auto near = stand_near(family, grazing.motion, grazing.parameter, contact, options);
+    auto near = point_beside_grazing(family, grazing.motion, grazing.parameter, contact, options);
     if (!near) { return std::nullopt; }
     near->slope = -near->slope;  // travelled towards lower speed
     Corner corner = corner_at(family, near->point, grazing.parameter, contact);
@@ -212,18 +216,18 @@ std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, co
     }
     const auto direction = real_side(family, *solved, grazing.parameter, options, piece.slope() < 0.0 ? -1.0 : 1.0);
     if (!direction) { return std::nullopt; }
-    corner.near = std::move(*near);
+    corner.in_front = std::move(*near);
     corner.onward = {*solved, grazing.parameter, *direction, {}};
     return corner;
 }
 
-std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, const Standing& last, const Point& seen,
-                                    const TraceOptions& options) {
+std::optional<Corner> enter_contact(const flow::ParameterFamily& family, Piece& piece, const CurvePoint& last,
+                                    const Point& seen, const TraceOptions& options) {
     const auto [guess, contact] = with_contact(family.at(seen.parameter), seen.motion, unexpected(seen));
     const auto grazing =
         boundary::solve_critical(family, Kind::grazing, guess, seen.parameter, contact, 0.0, options.size);
     if (!grazing.ok()) { return std::nullopt; }
-    auto near = stand_near(family, grazing.motion, grazing.parameter, contact, options);
+    auto near = point_beside_grazing(family, grazing.motion, grazing.parameter, contact, options);
     if (!near) { return std::nullopt; }
     // The old form at the grazing point must lie between the last point and the one beyond.
     const flow::System system = family.at(grazing.parameter);
@@ -231,10 +235,10 @@ std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, co
     if (!old_form) { return std::nullopt; }
     const Vector found = piece.scaled(*old_form, grazing.parameter);
     if (!place_of(found, last.u, piece.point()).between()) { return std::nullopt; }
-    const auto before = stand_before(family, piece, found, *old_form, grazing.parameter);
+    const auto before = point_before_grazing(family, piece, found, *old_form, grazing.parameter);
     if (!before) { return std::nullopt; }
     Corner corner = corner_at(family, near->point, grazing.parameter, contact);
-    corner.before = *before;
+    corner.in_front = *before;
     corner.onward = {near->point.motion, near->point.parameter, 1.0, {}};
     corner.entering_contact = contact;
     return corner;

@@ -13,25 +13,23 @@ struct Corner {
     Point at;  ///< the grazing motion
     double uncertainty = 0.0;
     int contact = 0;  ///< which of the grazing motion's contacts touches
-    /// Leaving: the sequence with the contact at a very small speed, in front of the corner. Its parameter is 0 where
-    /// it could not be looked at.
-    Standing near;
-    Standing before;  ///< entering: the grazing motion in the form without the contact
+    /// In front of the corner, on the side that the branch comes from. Leaving: the sequence with the contact at a very
+    /// small speed. Entering: the grazing motion in the form without the contact.
+    CurvePoint in_front;
     Departure onward;
     bool shorter_period = false;  ///< leaving: what remains repeats sooner, it belongs to a branch of shorter period
-    int entering_contact = -1;    ///< in the sequence of `onward`; -1 when a contact has left
+    std::optional<int> entering_contact;  ///< in the sequence of `onward`; none when a contact has left
 };
 
-inline constexpr int no_contact = -1;
-/// The contact whose entry speed has become negative: the one furthest beyond grazing.
-int contact_leaving(const orbit::Motion& motion);
+/// The contact whose entry speed has become negative, if any: the one furthest beyond grazing.
+std::optional<int> contact_leaving(const orbit::Motion& motion);
 
 /// From `last` the piece has stepped to where this contact's entry speed is negative.
-std::optional<Corner> leave_contact(const flow::Family& family, Piece& piece, const Standing& last, int contact,
-                                    const TraceOptions& options);
+std::optional<Corner> leave_contact(const flow::ParameterFamily& family, Piece& piece, const CurvePoint& last,
+                                    int contact, const TraceOptions& options);
 
 /// From `last` the piece has stepped to where the hybrid flow meets a contact that the form does not have (`seen`).
-std::optional<Corner> enter_contact(const flow::Family& family, Piece& piece, const Standing& last, const Point& seen,
-                                    const TraceOptions& options);
+std::optional<Corner> enter_contact(const flow::ParameterFamily& family, Piece& piece, const CurvePoint& last,
+                                    const Point& seen, const TraceOptions& options);
 
 }  // namespace percuss::branch

@@ -26,7 +26,7 @@ std::complex<double> leading(const Point& point, Kind kind) {
     return best;
 }
 
-double test_value(const Standing& at, Kind kind) {
+double test_value(const CurvePoint& at, Kind kind) {
     switch (kind) {
         case Kind::fold: return at.slope / lowest_speed(at.point.motion);
         case Kind::flip: return 1.0 + leading(at.point, kind).real();
@@ -35,7 +35,7 @@ double test_value(const Standing& at, Kind kind) {
 }
 
 /// Multipliers beyond the circle without the one that makes the boundary.
-int unstable_besides(const Standing& at) {
+int unstable_besides(const CurvePoint& at) {
     if (at.on == Kind::none) { return at.point.unstable_dimension(); }
     const double critical = at.on == Kind::fold ? 1.0 : -1.0;
     const auto& all = at.point.map_multipliers;
@@ -64,12 +64,14 @@ double lowest_speed(const orbit::Motion& motion) {
     return lowest;
 }
 
-bool lies_between(Kind kind, const Standing& a, const Standing& b) {
+bool lies_between(Kind kind, const CurvePoint& a, const CurvePoint& b) {
     switch (kind) {
         case Kind::fold: return a.slope * b.slope < 0.0;
         case Kind::flip: return (a.point.beyond_minus + b.point.beyond_minus) % 2 != 0;
         default: break;
     }
+    // Without damping no pair can cross the circle alone.
+    if (a.point.neutral && b.point.neutral) { return false; }
     const int change = unstable_besides(b) - unstable_besides(a);
     if (a.on == Kind::none && b.on == Kind::none) { return std::abs(change) > 1; }
     // On a fold or flip the multiplier that makes it may count or not.
@@ -81,13 +83,13 @@ namespace {
 /// Refines one boundary by Newton's method on the extended system, from an interpolation of its test function; when the
 /// result does not lie between the two points, the bracket is halved along the piece and tried again. behind: distance
 /// of b back along the piece from where it stands.
-BoundaryPoint locate(const flow::Family& family, Piece& piece, Kind kind, const Standing& a, const Standing& b,
-                     double behind, double size, long& solves) {
+BoundaryPoint locate(const flow::ParameterFamily& family, Piece& piece, Kind kind, const CurvePoint& a,
+                     const CurvePoint& b, double behind, double size, long& solves) {
     BoundaryPoint found;
     found.kind = kind;
     found.of_half_cycle = kind == Kind::flip && b.point.motion.mirrored;
-    Standing low = a;
-    Standing high = b;
+    CurvePoint low = a;
+    CurvePoint high = b;
     for (int halving = 0; halving < 12; ++halving) {
         const double f_low = test_value(low, kind);
         const double f_high = test_value(high, kind);
@@ -114,7 +116,7 @@ BoundaryPoint locate(const flow::Family& family, Piece& piece, Kind kind, const 
         ++solves;
         Look seen = look(family, middle->motion, middle->parameter);
         if (!seen.ok()) { break; }
-        Standing at{piece.scaled(middle->motion, middle->parameter), middle->slope, std::move(seen.point)};
+        CurvePoint at{piece.scaled(middle->motion, middle->parameter), middle->slope, std::move(seen.point)};
         if (lies_between(kind, low, at)) {
             behind += half;
             high = std::move(at);
@@ -129,27 +131,27 @@ BoundaryPoint locate(const flow::Family& family, Piece& piece, Kind kind, const 
 
 }  // namespace
 
-std::vector<BoundaryPoint> boundaries_between(const flow::Family& family, Piece& piece, const Standing& a,
-                                              const Standing& b, double size, long& solves) {
+std::vector<BoundaryPoint> boundaries_between(const flow::ParameterFamily& family, Piece& piece, const CurvePoint& a,
+                                              const CurvePoint& b, double size, long& solves) {
     struct Found {
         BoundaryPoint boundary;
-        Standing at;
+        CurvePoint at;
     };
-    const auto behind = [&](const Standing& at) { return (piece.point() - at.u).norm(); };
+    const auto behind = [&](const CurvePoint& at) { return (piece.point() - at.u).norm(); };
     std::vector<Found> found;
     for (const Kind kind : {Kind::fold, Kind::flip}) {
         if (!lies_between(kind, a, b)) { continue; }
         BoundaryPoint boundary = locate(family, piece, kind, a, b, behind(b), size, solves);
-        Standing at{piece.scaled(boundary.point.motion, boundary.point.parameter), 0.0, boundary.point, kind};
+        CurvePoint at{piece.scaled(boundary.point.motion, boundary.point.parameter), 0.0, boundary.point, kind};
         found.push_back({std::move(boundary), std::move(at)});
     }
     std::sort(found.begin(), found.end(), [&](const Found& x, const Found& y) {
         return place_of(x.at.u, a.u, b.u).share < place_of(y.at.u, a.u, b.u).share;
     });
     std::vector<BoundaryPoint> all;
-    const Standing* before = &a;
+    const CurvePoint* before = &a;
     for (std::size_t i = 0; i <= found.size(); ++i) {
-        const Standing& next = i < found.size() ? found[i].at : b;
+        const CurvePoint& next = i < found.size() ? found[i].at : b;
         if (lies_between(Kind::torus, *before, next)) {
             all.push_back(locate(family, piece, Kind::torus, *before, next, behind(next), size, solves));
         }

@@ -10,7 +10,7 @@
 namespace percuss::branch {
 
 /// A point of a piece: its scaled unknowns, the slope of the parameter along the way of travel, what was seen.
-struct Standing {
+struct CurvePoint {
     numerics::Vector u;
     double slope = 0.0;
     Point point;
@@ -20,12 +20,12 @@ struct Standing {
 /// Whether a boundary lies between two points: a fold where the slope changes sign, a flip where the number of real
 /// multipliers beyond -1 changes parity. A torus (no fold or flip in between) where the unstable dimension changes: a
 /// pair has crossed the circle, whatever real multipliers it came from or went to.
-bool lies_between(boundary::Kind kind, const Standing& a, const Standing& b);
+bool lies_between(boundary::Kind kind, const CurvePoint& a, const CurvePoint& b);
 
 /// Boundaries between two points of `piece`, which stands at b or beyond, in order. Folds and flips are found first;
 /// torus points between them.
-std::vector<BoundaryPoint> boundaries_between(const flow::Family& family, Piece& piece, const Standing& a,
-                                              const Standing& b, double size, long& solves);
+std::vector<BoundaryPoint> boundaries_between(const flow::ParameterFamily& family, Piece& piece, const CurvePoint& a,
+                                              const CurvePoint& b, double size, long& solves);
 
 /// Where a point lies between two others: share of the way, distance from the straight line in units of its length.
 struct Place {

@@ -17,12 +17,12 @@ using numerics::Vector;
 
 class Follower {
 public:
-    Follower(const flow::Family& family, const BoundaryPoint& start, const LocusOptions& options)
+    Follower(const flow::ParameterFamily& family, const BoundaryPoint& start, const LocusOptions& options)
         : family_(family),
           options_(options),
           start_(start),
           equations_(family, start.kind, start.point.motion, start.contact, options.size),
-          walker_([this](const Vector& u, Vector& f, Matrix& j) { return equations_.evaluate(u, {}, f, j); },
+          walker_([this](const Vector& u, Vector& f, Matrix& j) { return evaluate(u, f, j); },
                   {.first_step = 0.02,
                    .largest_step = 0.25,
                    .largest_parameter_step = 0.1,
@@ -43,6 +43,14 @@ public:
     }
 
 private:
+    bool evaluate(const Vector& u, Vector& f, Matrix& jacobian) const {
+        auto r = equations_.evaluate(u, {});
+        if (!r) { return false; }
+        f = std::move(r->value);
+        jacobian = std::move(r->jacobian);
+        return true;
+    }
+
     [[nodiscard]] bool can_continue() {
         if (locus_.end != End::not_run) { return false; }
         if (static_cast<int>(locus_.points.size()) >= options_.max_points || (options_.stop && options_.stop())) {
@@ -64,7 +72,7 @@ private:
         if (!walker_.advance()) { return lose("the step length collapsed"); }
         const Vector& u = walker_.point();
         const orbit::Motion motion = equations_.motion(u);
-        if (start_.kind != Kind::grazing && contact_leaving(motion) != no_contact) {
+        if (start_.kind != Kind::grazing && contact_leaving(motion)) {
             // Near grazing the speed is tiny beside everything else: the step may only have been too long.
             if (walker_.step() > shortest_step && walker_.retreat()) { return; }
             return lose("the motion grazes: the boundary ends on a grazing curve");
@@ -135,7 +143,7 @@ private:
         const double va = equations_.parameters(a)[1];
         const double vb = equations_.parameters(b)[1];
         const Vector guess = a + (value - va) / (vb - va) * (b - a);
-        flow::Family by_omega;
+        flow::ParameterFamily by_omega;
         by_omega.base = family_.base;
         by_omega.units = {family_.units.front()};
         by_omega.parameters = [this, value](std::span<const double> p) {
@@ -165,7 +173,7 @@ private:
 
     void add_point(const orbit::Motion& motion, double omega, double value, double angle) {
         ++locus_.solves;
-        const flow::Family fixed = flow::along_frequency(
+        const flow::ParameterFamily fixed = flow::along_frequency(
             family_.base.with(family_.parameters(std::array<double, 2>{omega, value})), family_.units.front());
         const Look seen = look(fixed, motion, omega);
         const double force = start_.kind == Kind::grazing && motion.contacts() == 1 ? 0.0 : seen.point.peak_force;
@@ -174,7 +182,7 @@ private:
 
     static constexpr double shortest_step = 1e-7;
 
-    const flow::Family& family_;
+    const flow::ParameterFamily& family_;
     const LocusOptions& options_;
     const BoundaryPoint& start_;
     CriticalEquations equations_;
@@ -184,7 +192,7 @@ private:
 
 }  // namespace
 
-Locus follow_boundary(const flow::Family& family, const BoundaryPoint& start, const LocusOptions& options) {
+Locus follow_boundary(const flow::ParameterFamily& family, const BoundaryPoint& start, const LocusOptions& options) {
     return Follower(family, start, options).run();
 }
 

@@ -48,6 +48,6 @@ struct LocusOptions {
 /// family: parameters (omega, value). start: a boundary at value = options.from, refined in omega.
 /// Pseudo-arclength on the extended system of boundary/critical.hpp, until the value leaves the range, the motion stops
 /// being one that strikes as assumed (a fold that reaches grazing), or the walker stalls.
-Locus follow_boundary(const flow::Family& family, const BoundaryPoint& start, const LocusOptions& options);
+Locus follow_boundary(const flow::ParameterFamily& family, const BoundaryPoint& start, const LocusOptions& options);
 
 }  // namespace percuss::branch

@@ -6,7 +6,7 @@ using numerics::Matrix;
 using numerics::Vector;
 using orbit::Motion;
 
-Piece::Piece(const flow::Family& family, Motion like, double size, const StepOptions& options)
+Piece::Piece(const flow::ParameterFamily& family, Motion like, double size, const StepOptions& options)
     : family_(family),
       like_(std::move(like)),
       walker_([this](const Vector& u, Vector& f, Matrix& j) { return evaluate(u, f, j); },

@@ -20,7 +20,7 @@ struct StepOptions {
 class Piece {
 public:
     /// like: form of the motions; size: of the motion, for the units.
-    Piece(const flow::Family& family, orbit::Motion like, double size, const StepOptions& options);
+    Piece(const flow::ParameterFamily& family, orbit::Motion like, double size, const StepOptions& options);
     Piece(const Piece&) = delete;
     Piece& operator=(const Piece&) = delete;
 
@@ -60,7 +60,7 @@ public:
 private:
     bool evaluate(const numerics::Vector& u, numerics::Vector& f, numerics::Matrix& jacobian) const;
 
-    const flow::Family& family_;
+    const flow::ParameterFamily& family_;
     orbit::Motion like_;
     numerics::Vector units_;
     numerics::ArclengthWalker walker_;

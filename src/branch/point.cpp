@@ -7,6 +7,10 @@
 namespace percuss::branch {
 namespace {
 
+/// How near 1 the determinant must be. Rounding and the integrator leave less (an undamped Duffing oscillator shows
+/// 1e-15); a damping ratio of 1e-8 leaves more. With less damping than that multipliers do not tell.
+constexpr double neutral_accuracy = 1e-7;
+
 void count_unstable(Point& point) {
     for (const auto& mu : point.map_multipliers) {
         if (!(std::abs(mu) > 1.0)) { continue; }
@@ -36,7 +40,7 @@ std::vector<flow::Contact> contacts_met(const flow::System& system, const Point&
 
 }  // namespace
 
-Look look(const flow::Family& family, const orbit::Motion& motion, double parameter) {
+Look look(const flow::ParameterFamily& family, const orbit::Motion& motion, double parameter) {
     Look result;
     const flow::System system = family.at(parameter);
     auto strobed = orbit::strobe(system, motion);
@@ -68,10 +72,18 @@ Look look(const flow::Family& family, const orbit::Motion& motion, double parame
     point.map_multipliers = point.multipliers;
     if (motion.mirrored) { point.map_multipliers = strobed->monodromy.eigenvalues(); }
     count_unstable(point);
+    point.neutral = std::abs(std::abs(strobed->monodromy.determinant()) - 1.0) < neutral_accuracy;
     const numerics::SmallVector y = orbit::to_vector(system, strobed->state);
     const double gap = (orbit::to_vector(system, image.state) - y).norm();
     result.status = gap <= 1e-6 * (1.0 + y.norm()) ? Look::Status::ok : Look::Status::not_closed;
     return result;
+}
+
+bool same_motion(const Point& a, const Point& b, double size) {
+    const auto near = [](double x, double y, double unit) { return std::abs(x - y) <= 1e-6 * unit; };
+    return a.contacts.size() == b.contacts.size() && near(a.x_max, b.x_max, size) && near(a.x_min, b.x_min, size) &&
+           near(a.peak_force, b.peak_force, 1.0 + a.peak_force) &&
+           near(a.max_multiplier(), b.max_multiplier(), 1e2 * (1.0 + a.max_multiplier()));
 }
 
 flow::State state_at_zero(const flow::System& system, const Point& point) {

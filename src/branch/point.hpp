@@ -4,7 +4,7 @@
 /// stable, and whether its contacts are the ones its form assumes.
 
 #include "boundary/boundary.hpp"
-#include "flow/family.hpp"
+#include "flow/parameter_family.hpp"
 #include "orbit/motion.hpp"
 
 #include <cstdint>
@@ -30,10 +30,13 @@ struct Point {
     int beyond_plus = 0;
     int beyond_minus = 0;
     int pairs_beyond = 0;
+    /// The map keeps volumes of states: no damping at work. Its multipliers come in pairs mu, 1/mu; a pair of complex
+    /// ones stays on the unit circle, and rounding decides on which side of it.
+    bool neutral = false;
 
     [[nodiscard]] double amplitude() const { return 0.5 * (x_max - x_min); }
     [[nodiscard]] double max_multiplier() const { return std::abs(multipliers[0]); }
-    [[nodiscard]] bool stable() const { return max_multiplier() < 1.0; }
+    [[nodiscard]] bool stable() const { return !neutral && max_multiplier() < 1.0; }
     [[nodiscard]] int unstable_dimension() const { return beyond_plus + beyond_minus + 2 * pairs_beyond; }
 };
 
@@ -49,7 +52,11 @@ struct Look {
 /// Follows the motion for one period. A motion of free form is followed without the stop, so that it can be looked at
 /// beyond grazing; its contacts then come from the hybrid flow. A sequence does not close (1e-6) when its contacts are
 /// other than assumed.
-Look look(const flow::Family& family, const orbit::Motion& motion, double parameter);
+Look look(const flow::ParameterFamily& family, const orbit::Motion& motion, double parameter);
+
+/// Whether two points of one parameter are the same motion: extremes, peak force and largest multiplier agree to 1e-6,
+/// the multiplier to 1e-4.
+bool same_motion(const Point& a, const Point& b, double size);
 
 /// State at phase 0 of the drive.
 flow::State state_at_zero(const flow::System& system, const Point& point);

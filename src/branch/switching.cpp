@@ -35,16 +35,10 @@ std::vector<const Point*> points_and_turns(const Branch& branch) {
     return way;
 }
 
-bool alike(const Point& a, const Point& b, double size) {
-    const auto near = [](double x, double y, double unit) { return std::abs(x - y) <= 1e-6 * unit; };
-    return a.contacts.size() == b.contacts.size() && near(a.x_max, b.x_max, size) && near(a.x_min, b.x_min, size) &&
-           near(a.peak_force, b.peak_force, 1.0 + a.peak_force) &&
-           near(a.max_multiplier(), b.max_multiplier(), 1e2 * (1.0 + a.max_multiplier()));
-}
-
 }  // namespace
 
-std::optional<Departure> departure_at_flip(const flow::Family& family, const BoundaryPoint& flip, double size) {
+std::optional<Departure> departure_at_flip(const flow::ParameterFamily& family, const BoundaryPoint& flip,
+                                           double size) {
     const Motion& motion = flip.point.motion;
     const flow::System system = family.at(flip.point.parameter);
     const auto r = orbit::shoot(system, motion, {});
@@ -70,14 +64,14 @@ std::optional<Departure> departure_at_flip(const flow::Family& family, const Bou
     return departure;
 }
 
-bool passes_through(const flow::Family& family, const Branch& branch, const Point& motion, double size) {
+bool passes_through(const flow::ParameterFamily& family, const Branch& branch, const Point& motion, double size) {
     const double p = motion.parameter;
     const flow::System system = family.at(p);
     const auto is_it = [&](const Motion& guess) {
         const auto solved = orbit::solve(system, guess);
         if (!solved) { return false; }
         const Look seen = look(family, *solved, p);
-        return seen.ok() && alike(seen.point, motion, size);
+        return seen.ok() && same_motion(seen.point, motion, size);
     };
     const std::vector<const Point*> way = points_and_turns(branch);
     // Where it joins another branch it goes on a little beyond its last point, at a flip it begins before its first.

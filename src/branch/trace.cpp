@@ -16,7 +16,7 @@ using orbit::Motion;
 
 class Tracer {
 public:
-    Tracer(const flow::Family& family, const TraceOptions& options) : family_(family), options_(options) {}
+    Tracer(const flow::ParameterFamily& family, const TraceOptions& options) : family_(family), options_(options) {}
 
     Branch run(const Departure& departure) {
         branch_.period = departure.motion.period;
@@ -55,10 +55,10 @@ private:
     bool set_out(const Departure& d) {
         renew_piece(d.motion);
         ++branch_.solves;
-        if (d.off.size() == 0) { return piece_->start(d.motion, d.parameter, d.direction) && stand_here(); }
+        if (d.off.size() == 0) { return piece_->start(d.motion, d.parameter, d.direction) && take_current(); }
         // Beside a grazing point the new branch itself grazes close by: then a smaller distance is needed.
         for (double distance = departure_distance; distance > 1e-7; distance *= 0.1) {
-            if (piece_->start_off(d.motion, d.parameter, d.off, distance) && stand_here()) {
+            if (piece_->start_off(d.motion, d.parameter, d.off, distance) && take_current()) {
                 piece_->set_step(distance);
                 return true;
             }
@@ -72,8 +72,7 @@ private:
         if (!piece_->advance()) { return change_form("the step length collapsed"); }
         ++branch_.solves;
         const Motion motion = piece_->motion();
-        const int leaving = contact_leaving(motion);
-        if (leaving != no_contact) { return leave(leaving); }
+        if (const auto leaving = contact_leaving(motion)) { return leave(*leaving); }
         Look seen = look(family_, motion, piece_->parameter());
         if (seen.status == Look::Status::flow_failed) { return try_shorter("the motion could not be integrated"); }
         const std::size_t met = seen.point.contacts.size();
@@ -85,7 +84,7 @@ private:
         accept({piece_->point(), piece_->slope(), std::move(seen.point)});
     }
 
-    void accept(Standing here) {
+    void accept(CurvePoint here) {
         if (joins(last_, here)) {
             branch_.end = End::joined;
             return;
@@ -100,12 +99,12 @@ private:
             end_at(p < low ? low : high);
         } else if (closes()) {
             close();
-        } else if (last_.point.motion.form == Form::strobed && ++strobed_points_ >= 4) {
+        } else if (last_.point.motion.form == Form::strobed && ++strobed_points_ >= strobed_stretch) {
             return_to_sequence();
         }
     }
 
-    void note_boundaries(const Standing& a, const Standing& b) {
+    void note_boundaries(const CurvePoint& a, const CurvePoint& b) {
         for (BoundaryPoint& found : boundaries_between(family_, *piece_, a, b, options_.size, branch_.solves)) {
             record(std::move(found));
         }
@@ -134,7 +133,7 @@ private:
         const auto corner = leave_contact(family_, *piece_, last_, contact, options_);
         branch_.solves += 2;
         if (!corner) { return try_shorter("the grazing point where a contact ends could not be located"); }
-        note_boundaries(last_, corner->near);
+        note_boundaries(last_, corner->in_front);
         pass(*corner);
     }
 
@@ -145,14 +144,16 @@ private:
         auto corner = enter_contact(family_, *piece_, last_, seen, options_);
         branch_.solves += 2;
         if (!corner) { return try_shorter("the grazing point where a contact begins could not be located"); }
-        note_boundaries(last_, corner->before);
+        note_boundaries(last_, corner->in_front);
         pass(*corner);
     }
 
     /// Goes on behind a grazing point with the other form.
     void pass(const Corner& corner) {
-        const bool leaving = corner.entering_contact < 0;
-        if (leaving && corner.near.slope * corner.onward.direction < 0.0) { record_turn(corner, corner.near.point); }
+        const bool leaving = !corner.entering_contact;
+        if (leaving && corner.in_front.slope * corner.onward.direction < 0.0) {
+            record_turn(corner, corner.in_front.point);
+        }
         branch_.points.push_back(corner.at);
         BoundaryPoint found;
         found.kind = Kind::grazing;
@@ -167,9 +168,9 @@ private:
         renew_piece(corner.onward.motion);
         const bool started =
             leaving ? piece_->start(corner.onward.motion, corner.onward.parameter, corner.onward.direction)
-                    : piece_->start_with_speed(corner.onward.motion, corner.onward.parameter, corner.entering_contact);
-        if (!started || !stand_here()) { return lose("the motion behind a grazing point could not be found"); }
-        if (!leaving && corner.before.slope * last_.slope < 0.0) { record_turn(corner, last_.point); }
+                    : piece_->start_with_speed(corner.onward.motion, corner.onward.parameter, *corner.entering_contact);
+        if (!started || !take_current()) { return lose("the motion behind a grazing point could not be found"); }
+        if (!leaving && corner.in_front.slope * last_.slope < 0.0) { record_turn(corner, last_.point); }
         strobed_points_ = 0;
     }
 
@@ -219,7 +220,7 @@ private:
     void restart(const Motion& motion, const char* reason) {
         const double direction = last_.slope;
         renew_piece(motion);
-        if (!piece_->start(motion, last_.point.parameter, direction) || !stand_here()) { return lose(reason); }
+        if (!piece_->start(motion, last_.point.parameter, direction) || !take_current()) { return lose(reason); }
         strobed_points_ = 0;
     }
 
@@ -227,7 +228,7 @@ private:
         piece_ = std::make_unique<Piece>(family_, motion, options_.size, options_.steps);
     }
 
-    bool stand_here() {
+    bool take_current() {
         Look seen = look(family_, piece_->motion(), piece_->parameter());
         if (!seen.ok()) { return false; }
         last_ = {piece_->point(), piece_->slope(), std::move(seen.point)};
@@ -237,7 +238,7 @@ private:
     // ---- shape of the whole
 
     /// Whether both halves of a motion of even period have become the same, or changed places, during the step.
-    [[nodiscard]] bool joins(const Standing& a, const Standing& b) const {
+    [[nodiscard]] bool joins(const CurvePoint& a, const CurvePoint& b) const {
         const Motion& motion = b.point.motion;
         if (motion.form != Form::sequence || branch_.period % 2 != 0 || motion.contacts() % 2 != 0 ||
             a.u.size() != b.u.size() || branch_.points.size() < 2) {
@@ -255,23 +256,44 @@ private:
     }
 
     /// Whether the last step passed the first point again, in the same direction.
-    [[nodiscard]] bool closes() const {
+    [[nodiscard]] bool closes() {
         const auto& points = branch_.points;
         if (points.size() < 8) { return false; }
-        const Point& first = points.front();
-        const Point& a = points[points.size() - 2];
-        const Point& b = points.back();
+        return near_first(points[points.size() - 2], points.back()) &&
+               passes_first(points[points.size() - 2], points.back());
+    }
+
+    /// A first look: the last step is near the first point in what is seen of the motions, in units of its own length.
+    [[nodiscard]] bool near_first(const Point& a, const Point& b) const {
+        const Point& first = branch_.points.front();
         const double unit = family_.units.front();
         const double length = std::abs(b.parameter - a.parameter) / unit + std::abs(b.x_min - a.x_min) / options_.size +
                               std::abs(b.peak_force - a.peak_force) / (1.0 + first.peak_force);
         const double away = std::abs(b.parameter - first.parameter) / unit +
                             std::abs(b.x_min - first.x_min) / options_.size +
                             std::abs(b.peak_force - first.peak_force) / (1.0 + first.peak_force);
-        const double way_there = points[1].parameter - first.parameter;
+        const double way_there = branch_.points[1].parameter - first.parameter;
         return away <= 1.5 * length && b.contacts.size() == first.contacts.size() &&
                (b.parameter - a.parameter) * way_there > 0.0 && a.motion.form == b.motion.form &&
                std::abs(b.max_multiplier() - first.max_multiplier()) <
                    3.0 * std::abs(b.max_multiplier() - a.max_multiplier()) + 1e-3;
+    }
+
+    /// The proof: the motion of the last step at the first point's parameter is the first motion. Far below resonance a
+    /// branch turns back and forth between folds less than a step apart, on motions that differ by one bounce in
+    /// fifteen: near is not the same there.
+    [[nodiscard]] bool passes_first(const Point& a, const Point& b) {
+        const Point& first = branch_.points.front();
+        if (a.motion.contacts() != b.motion.contacts()) { return false; }
+        const double share = (first.parameter - a.parameter) / (b.parameter - a.parameter);
+        const numerics::Vector from = orbit::pack(family_.base, a.motion);
+        const numerics::Vector to = orbit::pack(family_.base, b.motion);
+        const Motion guess = orbit::unpack(family_.base, from + share * (to - from), a.motion);
+        ++branch_.solves;
+        const auto solved = orbit::solve(family_.at(first.parameter), guess);
+        if (!solved) { return false; }
+        const Look seen = look(family_, *solved, first.parameter);
+        return seen.ok() && same_motion(seen.point, first, options_.size);
     }
 
     /// The first point becomes the last as well.
@@ -303,24 +325,29 @@ private:
         return std::abs(a.point.parameter - b.point.parameter) <= 1e-6 * std::abs(a.point.parameter);
     }
 
+    /// In scaled unknowns: a step that is still too long to keep the contacts apart is not worth halving on.
     static constexpr double shortest_step = 1e-4;
+    /// From a flip, in scaled unknowns: a first step of StepOptions.
     static constexpr double departure_distance = 0.02;
+    /// Points in strobed form before a return to a contact sequence is tried: contacts that have just merged or split
+    /// are still too close to be told as a sequence.
+    static constexpr int strobed_stretch = 4;
 
-    const flow::Family& family_;
+    const flow::ParameterFamily& family_;
     const TraceOptions& options_;
     Branch branch_;
     std::unique_ptr<Piece> piece_;
-    Standing last_;
+    CurvePoint last_;
     int strobed_points_ = 0;
 };
 
 }  // namespace
 
-Branch trace(const flow::Family& family, const Departure& departure, const TraceOptions& options) {
+Branch trace(const flow::ParameterFamily& family, const Departure& departure, const TraceOptions& options) {
     return Tracer(family, options).run(departure);
 }
 
-Branch trace_both_ways(const flow::Family& family, const Departure& departure, const TraceOptions& options) {
+Branch trace_both_ways(const flow::ParameterFamily& family, const Departure& departure, const TraceOptions& options) {
     Departure back = departure;
     back.direction = -departure.direction;
     Branch joined = trace(family, back, options);

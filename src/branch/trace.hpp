@@ -30,9 +30,9 @@ struct Departure {
 /// Follows the branch until it leaves the range, closes, or is lost. Forms of motion change at grazing points: a
 /// contact whose entry speed passes through zero is taken out of the sequence, one that the hybrid flow finds new is
 /// put in, and the branch goes on to the side where the motion is real.
-Branch trace(const flow::Family& family, const Departure& departure, const TraceOptions& options);
+Branch trace(const flow::ParameterFamily& family, const Departure& departure, const TraceOptions& options);
 
 /// Both ways from a departure, joined to one branch with the parameter rising at the departure.
-Branch trace_both_ways(const flow::Family& family, const Departure& departure, const TraceOptions& options);
+Branch trace_both_ways(const flow::ParameterFamily& family, const Departure& departure, const TraceOptions& options);
 
 }  // namespace percuss::branch

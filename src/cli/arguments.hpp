@@ -2,53 +2,38 @@
 /// \file
 /// The command line taken apart.
 
-#include "io/settings.hpp"
+#include "verbs/verbs.hpp"
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace percuss::cli {
 
-struct VerbInfo {
-    std::string_view name;
-    std::string_view summary;
-    bool available;  ///< in this version
-};
-
-/// Every verb, in the order of a typical session.
-std::span<const VerbInfo> verbs();
-
-/// What an option of the command line does; keys of problem files aside.
-struct OptionInfo {
+/// An option that every verb takes.
+struct CommonOption {
     std::string_view name;
     std::string_view value;  ///< placeholder; empty for a flag
     std::string_view meaning;
-    std::string_view only_for;  ///< verbs that take it, separated by blanks; empty: all
 };
 
-std::span<const OptionInfo> run_options();
+std::span<const CommonOption> common_options();
+
+/// What help is asked for.
+enum class Topic : std::uint8_t { none, general, verb, keys, quantities };
 
 struct Arguments {
-    std::string verb;     ///< canonical spelling; empty for --help and --version alone
-    std::string problem;  ///< problem file
-    std::vector<io::Setting> keys;
-    std::optional<std::string> out;
-    std::optional<int> jobs;
-    std::optional<std::uint64_t> seed;
+    const verbs::Verb* verb = nullptr;  ///< null for --help and --version alone
+    verbs::RunSettings run;
     std::optional<double> time_limit;  ///< s
-    bool help = false;
+    Topic help = Topic::none;
     bool version = false;
     bool json = false;
     bool quiet = false;
-    bool force = false;
-    bool gradients = false;
 };
 
-/// Arguments without the program's name. Throws io::ProblemError with one sentence for a wrong usage.
+/// Arguments without the program's name. Throws problem::ProblemError with one sentence for a wrong usage.
 Arguments parse_arguments(std::span<const std::string> arguments);
 
 }  // namespace percuss::cli

@@ -1,33 +1,30 @@
 #include "cli/exit_code.hpp"
 
+#include <array>
+
 namespace percuss::cli {
 
-using study::Ending;
+namespace {
+
+using verbs::Ending;
+
+struct Row {
+    Ending ending;
+    int code;
+};
+
+constexpr std::array table = {Row{Ending::verified, exit_done}, Row{Ending::refused, exit_bad_input},
+                              Row{Ending::infeasible, 3},       Row{Ending::not_certified, 4},
+                              Row{Ending::budget, 4},           Row{Ending::some_failed, 5},
+                              Row{Ending::interrupted, 130}};
+
+}  // namespace
 
 int exit_code(Ending ending) {
-    switch (ending) {
-        case Ending::verified: return exit_done;
-        case Ending::infeasible: return exit_infeasible;
-        case Ending::not_certified:
-        case Ending::budget: return exit_not_certified;
-        case Ending::some_failed: return exit_some_failed;
-        case Ending::interrupted: return exit_interrupted;
-        case Ending::not_run: break;
+    for (const Row& row : table) {
+        if (row.ending == ending) { return row.code; }
     }
     return exit_internal_error;
-}
-
-std::string_view ending_text(Ending ending) {
-    switch (ending) {
-        case Ending::verified: return "verified";
-        case Ending::infeasible: return "infeasible";
-        case Ending::not_certified: return "not-certified";
-        case Ending::budget: return "budget";
-        case Ending::some_failed: return "some-failed";
-        case Ending::interrupted: return "interrupted";
-        case Ending::not_run: break;
-    }
-    return "not-run";
 }
 
 }  // namespace percuss::cli

@@ -1,21 +1,14 @@
 #pragma once
 /// \file
 
-#include "study/study.hpp"
-
-#include <string_view>
+#include "verbs/session.hpp"
 
 namespace percuss::cli {
 
 inline constexpr int exit_done = 0;
 inline constexpr int exit_internal_error = 1;
 inline constexpr int exit_bad_input = 2;
-inline constexpr int exit_infeasible = 3;
-inline constexpr int exit_not_certified = 4;
-inline constexpr int exit_some_failed = 5;
-inline constexpr int exit_interrupted = 130;
 
-int exit_code(study::Ending ending);
-std::string_view ending_text(study::Ending ending);
+int exit_code(verbs::Ending ending);
 
 }  // namespace percuss::cli

@@ -1,75 +1,140 @@
 #include "cli/help.hpp"
 
 #include "cli/arguments.hpp"
-#include "io/presentation.hpp"
-#include "io/setting_table.hpp"
+#include "design/quantity.hpp"
+#include "results/presentation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 namespace percuss::cli {
 
 namespace {
 
-io::Block options_block(std::string_view verb) {
-    io::Block block{"Options", "", {"option", "meaning"}, {}};
-    for (const OptionInfo& option : run_options()) {
-        const bool applies = option.only_for.empty() || verb.empty() || option.only_for.find(verb) != std::string::npos;
-        if (!applies) { continue; }
-        std::string name = "--" + std::string(option.name);
-        name += option.value.empty() ? "" : " " + std::string(option.value);
-        std::string meaning(option.meaning);
-        if (verb.empty() && !option.only_for.empty()) { meaning += " (" + std::string(option.only_for) + ")"; }
-        block.rows.push_back({name, meaning});
+using results::Block;
+using results::Presentation;
+
+std::string option_text(std::string_view name, std::string_view value) {
+    return "--" + std::string(name) + (value.empty() ? "" : " " + std::string(value));
+}
+
+Block common_block() {
+    Block block{"Options of every verb", "", {"option", "meaning"}, {}};
+    for (const CommonOption& option : common_options()) {
+        block.rows.push_back({option_text(option.name, option.value), std::string(option.meaning)});
     }
     return block;
 }
 
-io::Block keys_block() {
-    io::Block block{"Keys of problem files, each also an option (--stop.gap \"0.4 mm\"), which then wins",
-                    "",
-                    {"key", "unit", "allowed", "default", "meaning"},
-                    {}};
-    for (const io::SettingInfo& info : io::setting_table()) {
-        block.rows.push_back({info.name, info.unit.empty() ? "-" : info.unit, info.allowed,
-                              info.fallback.empty() ? "required" : info.fallback,
-                              info.meaning + (info.repeatable ? " (repeatable)" : "")});
+/// The keys that `listed` tells, one line each: name, what is allowed and the default, meaning.
+Block keys_block(const std::function<bool(const problem::Row&)>& listed) {
+    Block block{"Keys of problem files, each also an option (--stop.gap \"0.4 mm\"), which then wins",
+                "",
+                {"key", "meaning, what is allowed, default"},
+                {}};
+    for (const problem::Section& section : verbs::sections()) {
+        for (const problem::Row& row : section.rows) {
+            if (!listed(row)) { continue; }
+            const std::string unit = row.unit.empty() ? "" : " [" + row.unit + "]";
+            const std::string fallback = row.fallback.empty() ? "required" : "default " + row.fallback;
+            block.rows.push_back({row.name, row.meaning + (row.repeatable() ? " (repeatable)" : "") + "; " +
+                                                row.allowed + unit + "; " + fallback});
+        }
     }
     return block;
+}
+
+Block values_block() {
+    return results::sentence(
+        "Values carry units (\"0.6 mm\", \"51.9 N/mm\"); a bare number is in the unit listed. Keys "
+        "of [nondimensional] are plain numbers. Required keys are those of the kind of actuator "
+        "described: [nondimensional], or [actuator] and [material], or [spring-mass]. A repeatable "
+        "key given as an option adds to the list of the file or replaces its entry about the same "
+        "quantity or key; none clears the list first.");
+}
+
+/// A row of the registry among those of its type: "dielectric-elastomer", or "[nondimensional]" for those told by their
+/// section.
+std::string name_of(const model::Actuator& actuator) {
+    return std::string(actuator.nondimensional ? actuator.sections_in_words : actuator.type);
 }
 
 }  // namespace
 
-std::string general_help() {
-    io::Presentation help;
+std::string general_help(std::size_t width) {
+    Presentation help;
     help.title = "percuss VERB PROBLEM [options]: design of resonant impact actuators";
-    io::Block verb_block{"Verbs", "", {"verb", "does"}, {}};
-    for (const VerbInfo& verb : verbs()) {
+    Block verb_block{"Verbs", "", {"verb", "does"}, {}};
+    for (const verbs::Verb& verb : verbs::verbs()) {
+        const bool available = verb.run != nullptr;
         verb_block.rows.push_back(
-            {std::string(verb.name), std::string(verb.summary) + (verb.available ? "" : " (not in this version)")});
+            {std::string(verb.name), std::string(verb.summary) + (available ? "" : " (not in this version)")});
     }
     help.blocks.push_back(verb_block);
-    help.blocks.push_back(options_block(""));
-    io::Block more;
-    more.sentence =
-        "percuss VERB --help lists every key of a problem file; percuss --version prints the version.\n"
-        "Exit status: 0 done and verified, 1 internal error, 2 bad usage or problem file, 3 no feasible "
-        "design\nor no impact, 4 budget spent or not certified, 5 some evaluations failed, 130 interrupted.";
-    help.blocks.push_back(more);
-    return io::plain_text(help);
+    help.blocks.push_back(common_block());
+    help.blocks.push_back(
+        results::sentence("percuss VERB --help lists the options and keys of a verb, percuss help keys all keys of "
+                          "problem files, percuss "
+                          "help quantities what can be asked for; percuss --version prints the version."));
+    help.blocks.push_back(
+        results::sentence("Exit status: 0 done and verified, 1 internal error, 2 bad usage or problem file, 3 no "
+                          "feasible design or no impact, 4 budget spent or not certified, 5 some evaluations failed, "
+                          "130 interrupted."));
+    return results::plain_text(help, width);
 }
 
-std::string verb_help(std::string_view verb) {
-    io::Presentation help;
-    help.title = "percuss " + std::string(verb) + " PROBLEM [options]";
-    for (const VerbInfo& info : verbs()) {
-        if (info.name == verb) { help.title += ": " + std::string(info.summary); }
+std::string verb_help(const verbs::Verb& verb, std::size_t width) {
+    Presentation help;
+    help.title = "percuss " + std::string(verb.name) + " PROBLEM [options]: " + std::string(verb.summary);
+    Block own{"Options of " + std::string(verb.name), "", {"option", "meaning"}, {}};
+    for (const verbs::VerbOption& option : verb.options) {
+        own.rows.push_back({option_text(option.name, option.value), std::string(option.meaning)});
     }
-    help.blocks.push_back(options_block(verb));
-    help.blocks.push_back(keys_block());
-    io::Block more;
-    more.sentence = "Values carry units (\"0.6 mm\", \"51.9 N/mm\"); a bare number is in the unit listed. Keys of "
-                    "[nondimensional] are plain numbers.\nRequired keys are those of the kind of actuator described: "
-                    "[nondimensional], or [actuator] and [material], or [spring-mass].";
-    help.blocks.push_back(more);
-    return io::plain_text(help);
+    if (!own.rows.empty()) { help.blocks.push_back(own); }
+    help.blocks.push_back(common_block());
+    help.blocks.push_back(keys_block([&](const problem::Row& row) { return verbs::reads(verb, row); }));
+    help.blocks.push_back(values_block());
+    return results::plain_text(help, width);
+}
+
+std::string keys_help(std::size_t width) {
+    Presentation help;
+    help.title = "Keys of problem files";
+    help.blocks.push_back(keys_block([](const problem::Row&) { return true; }));
+    help.blocks.push_back(values_block());
+    return results::plain_text(help, width);
+}
+
+std::string quantities_help(std::size_t width) {
+    Presentation help;
+    help.title = "Quantities: for design.maximise, design.minimise and design.limit";
+    Block block{"", "", {"quantity", "unit", "meaning", "actuators"}, {}};
+    for (std::size_t i = 0; i < design::quantity_count; ++i) {
+        const auto quantity = static_cast<design::Quantity>(i);
+        const design::QuantityInfo& info = design::quantity_info(quantity);
+        std::string having;
+        for (const model::Actuator* each : model::actuators()) {
+            const auto all = design::reported_quantities(*each);
+            const bool has = std::find(all.begin(), all.end(), quantity) != all.end();
+            if (has) { having += (having.empty() ? "" : ", ") + name_of(*each); }
+        }
+        block.rows.push_back({std::string(info.name), info.unit == "1" ? "-" : std::string(info.unit),
+                              std::string(info.meaning), having});
+    }
+    help.blocks.push_back(block);
+    return results::plain_text(help, width);
+}
+
+std::size_t terminal_width() {
+    constexpr std::size_t usual = 80;
+    constexpr std::size_t least = 40;
+    winsize size{};
+    const bool known = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return known ? std::max<std::size_t>(size.ws_col, least) : usual;
 }
 
 }  // namespace percuss::cli

@@ -25,7 +25,7 @@ Progress::~Progress() {
     if (bar_on_screen_) { std::fputs("\r\033[K", stderr); }
 }
 
-study::Observer Progress::observer() {
+verbs::Observer Progress::observer() {
     return [this](double share, std::string_view line) { show(share, line); };
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 
-#include "study/study.hpp"
+#include "verbs/study.hpp"
 
 #include <chrono>
 #include <mutex>
@@ -20,7 +20,7 @@ public:
     Progress& operator=(const Progress&) = delete;
 
     /// For studies; may be called from several threads. Must not outlive this object.
-    study::Observer observer();
+    verbs::Observer observer();
 
 private:
     using Clock = std::chrono::steady_clock;

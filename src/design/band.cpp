@@ -4,7 +4,7 @@
 #include "boundary/critical.hpp"
 #include "branch/trace.hpp"
 #include "design/families.hpp"
-#include "design/operating_point.hpp"
+#include "design/reach.hpp"
 #include "design/window.hpp"
 #include "orbit/polish.hpp"
 
@@ -39,7 +39,7 @@ public:
 private:
     /// The first boundary on either side at which the motion ceases to be stable or to strike.
     void follow_branch() {
-        const flow::Family family = frequency_family(c_.system);
+        const flow::ParameterFamily family = frequency_family(c_.system);
         const double omega = c_.system.omega();
         for (const bool up : {false, true}) {
             branch::TraceOptions options;
@@ -69,7 +69,7 @@ private:
     void set(BandEnd& end, Kind kind, const orbit::Motion& motion, int contact, double angle, double omega,
              const std::string& reason) const {
         const flow::System there = c_.system.at_omega(omega);
-        const flow::Family family = frequency_family(there);
+        const flow::ParameterFamily family = frequency_family(there);
         const auto exact = boundary::solve_critical(family, kind, motion, omega, contact, angle, motion_size(c_.system),
                                                     c_.directions);
         end.found = true;
@@ -120,6 +120,7 @@ private:
         options.seed = c_.sampling->seed;
         options.jobs = c_.sampling->jobs;
         options.max_cycles = c_.sampling->cycles;
+        options.cancelled = c_.cancelled;
         const orbit::Orbit tuned = orbit::polish_orbit(exact, orbit::state_at_zero(exact, *here), here->map.period);
         if (!tuned.ok() || !(orbit::max_multiplier(tuned) < 1.0)) { return false; }
         const auto answer = attractor::refute({exact, scout}, tuned, attractor::ensemble_box(exact, 0.0), options);

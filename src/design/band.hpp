@@ -4,6 +4,7 @@
 
 #include "design/problem.hpp"
 #include "flow/flow.hpp"
+#include "numerics/cancel.hpp"
 #include "orbit/orbit.hpp"
 
 #include <span>
@@ -34,6 +35,7 @@ struct BandCase {
     std::span<const double> d_edge;
     std::span<const flow::ParameterVector> directions;  ///< their omega entries are zero
     const Sampling* sampling;                           ///< null: other periods are not looked for
+    const numerics::CancelRequest& cancelled;           ///< then the search ends with what is known
 };
 
 /// First the ends of the motion's own branch (fold, flip, torus, grazing), and the edge above which the free motion

@@ -17,7 +17,7 @@ Specification with_value(Specification spec, Key key, double value) {
 }
 
 void require_key(const Specification& spec, Key key) {
-    const auto keys = model::keys_of(spec.family);
+    const auto keys = spec.type->keys;
     if (std::find(keys.begin(), keys.end(), key) == keys.end() || !spec.has(key)) {
         throw std::invalid_argument(std::string(model::key_info(key).name) +
                                     " is not a key of this problem: it cannot be varied");
@@ -26,19 +26,17 @@ void require_key(const Specification& spec, Key key) {
 
 }  // namespace
 
-bool is_drive_frequency(Key key) { return key == Key::drive_frequency || key == Key::nd_omega || key == Key::sm_omega; }
-
 double motion_size(const flow::System& system) {
     return std::max(system.stop_position() - system.integrator->centre(system.parameters), 1e-3);
 }
 
-flow::Family frequency_family(const flow::System& system) {
+flow::ParameterFamily frequency_family(const flow::System& system) {
     return flow::along_frequency(system, system.integrator->linear_resonance(system.parameters));
 }
 
-flow::Family key_family(const flow::System& system, const Specification& spec, Key key, double unit) {
+flow::ParameterFamily key_family(const flow::System& system, const Specification& spec, Key key, double unit) {
     require_key(spec, key);
-    flow::Family family;
+    flow::ParameterFamily family;
     family.base = system;
     family.units = {unit};
     family.parameters = [spec, key](std::span<const double> p) {
@@ -50,10 +48,11 @@ flow::Family key_family(const flow::System& system, const Specification& spec, K
     return family;
 }
 
-flow::Family frequency_and_key_family(const flow::System& system, const Specification& spec, Key key, double unit) {
+flow::ParameterFamily frequency_and_key_family(const flow::System& system, const Specification& spec, Key key,
+                                               double unit) {
     require_key(spec, key);
     const auto omega = static_cast<std::size_t>(system.integrator->info().omega);
-    flow::Family family;
+    flow::ParameterFamily family;
     family.base = system;
     family.units = {system.integrator->linear_resonance(system.parameters), unit};
     family.parameters = [spec, key, omega](std::span<const double> p) {

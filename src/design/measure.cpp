@@ -4,6 +4,8 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 namespace percuss::design {
 namespace {
@@ -17,51 +19,31 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 /// A quantity that is one observable times one scale (a product of powers of the scales).
 struct Proportional {
     ObservableIndex observable;
-    double (*scale)(const model::Scales&);
+    model::ScalePowers scale;
     std::uint32_t mask;
+    bool per_time = false;  ///< the observable is an integral over time, the quantity its mean over the period
 };
 
-const Proportional* proportional(Quantity quantity) {
-    using model::Scales;
-    static constexpr auto force = [](const Scales& s) { return s.force; };
-    static const std::array<std::pair<Quantity, Proportional>, 9> table = {{
+std::optional<Proportional> proportional(Quantity quantity) {
+    constexpr model::ScalePowers force = {0, 0, 1, {}};
+    static constexpr std::array<std::pair<Quantity, Proportional>, 6> table = {{
         {Quantity::peak_force, {orbit::peak_force, force, flow::observe_force}},
-        {Quantity::impact_velocity,
-         {orbit::impact_velocity, [](const Scales& s) { return s.length / s.time; }, flow::observe_force}},
-        {Quantity::contact_time, {orbit::contact_time, [](const Scales& s) { return s.time; }, flow::observe_force}},
-        {Quantity::impulse, {orbit::impulse, [](const Scales& s) { return s.force * s.time; }, flow::observe_force}},
-        {Quantity::stop_work,
-         {orbit::stop_work, [](const Scales& s) { return s.force * s.length; }, flow::observe_force}},
+        {Quantity::impact_velocity, {orbit::impact_velocity, {1, -1, 0, {}}, flow::observe_force}},
+        {Quantity::contact_time, {orbit::contact_time, {0, 1, 0, {}}, flow::observe_force}},
+        {Quantity::impulse, {orbit::impulse, {0, 1, 1, {}}, flow::observe_force}},
+        {Quantity::stop_work, {orbit::stop_work, {1, 0, 1, {}}, flow::observe_force}},
         {Quantity::rig_force, {orbit::peak_acceleration, force, flow::observe_acceleration}},
-        {Quantity::electric_field, {orbit::peak_field, [](const Scales& s) { return s.field; }, flow::observe_field}},
-        {Quantity::drive_current,
-         {orbit::peak_current, [](const Scales& s) { return s.current; }, flow::observe_current}},
-        {Quantity::apparent_power,
-         {orbit::peak_current, [](const Scales& s) { return s.current * s.voltage; }, flow::observe_current}},
     }};
     const auto match = std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.first == quantity; });
-    return match == table.end() ? nullptr : &match->second;
-}
-
-/// Derivative of a monomial in the (positive) scales, exactly: d(log f) is the sum of exponent times d(log factor), and
-/// the exponents are read off by doubling one factor at a time.
-double scale_derivative(double (*scale)(const model::Scales&), const model::Scales& s, const model::Scales& d) {
-    double sum = 0.0;
-    const double value = scale(s);
-    const auto factor = [&](double model::Scales::*member) {
-        if (d.*member == 0.0) { return; }
-        model::Scales doubled = s;
-        doubled.*member *= 2.0;
-        const double exponent = std::log2(scale(doubled) / value);
-        sum += exponent * value * (d.*member) / (s.*member);
-    };
-    factor(&model::Scales::length);
-    factor(&model::Scales::time);
-    factor(&model::Scales::force);
-    factor(&model::Scales::field);
-    factor(&model::Scales::current);
-    factor(&model::Scales::voltage);
-    return sum;
+    if (match != table.end()) { return match->second; }
+    const model::OwnQuantity* own = own_quantity(quantity);
+    if (own == nullptr) { return std::nullopt; }
+    if (own->from == model::OwnQuantity::From::mean) {
+        return Proportional{static_cast<ObservableIndex>(orbit::first_mean + own->signal), own->scale,
+                            flow::observe_mean(own->signal), true};
+    }
+    return Proportional{static_cast<ObservableIndex>(orbit::first_peak + own->signal), own->scale,
+                        flow::observe_peak(own->signal)};
 }
 
 /// d|mu|/d(key) for the leading multiplier: w^T (dM) v, with dM the derivative of the monodromy matrix along the orbit
@@ -164,13 +146,21 @@ struct Context {
 
 void measure_proportional(const Context& c, Quantity q, const Proportional& rule) {
     const double value = c.portrait.image.observed[rule.observable].value;
-    const double scale = rule.scale(c.scales);
+    const double scale = model::scale_of(rule.scale, c.scales);
     c.set(q, scale * value, scale * c.observed_error(rule.observable));
     auto& gradient = c.gradient(q);
     for (std::size_t i = 0; i < c.keys.size(); ++i) {
         gradient[i] = scale * c.portrait.total(rule.observable, static_cast<int>(i)) +
-                      scale_derivative(rule.scale, c.scales, c.keys[i].scales) * value;
+                      model::scale_derivative(rule.scale, c.scales, c.keys[i].scales) * value;
     }
+    if (!rule.per_time) { return; }
+    // The mean of a signal is its integral over tau divided by the duration theta/omega of the map.
+    const double per_tau = c.system.omega() / c.orbit.map.duration();
+    const std::size_t omega = index(c.system.integrator->info().omega);
+    for (std::size_t i = 0; i < c.keys.size(); ++i) {
+        gradient[i] = gradient[i] * per_tau + scale * value * c.keys[i].parameters[omega] / c.orbit.map.duration();
+    }
+    c.set(q, scale * value * per_tau, scale * c.observed_error(rule.observable) * per_tau);
 }
 
 void measure_amplitude(const Context& c) {
@@ -214,7 +204,7 @@ void measure_multiplier(const Context& c) {
 std::uint32_t observables_for(std::span<const Quantity> quantities) {
     std::uint32_t mask = flow::observe_nothing;
     for (Quantity q : quantities) {
-        if (const Proportional* rule = proportional(q)) { mask |= rule->mask; }
+        if (const std::optional<Proportional> rule = proportional(q)) { mask |= rule->mask; }
         if (q == Quantity::amplitude) { mask |= flow::observe_extrema; }
     }
     return mask;
@@ -238,7 +228,7 @@ Measurement measure(const flow::System& system, const flow::System* tighter, con
                           errors,    tighter, with_errors, omega_error, static_cast<int>(keys.size()),
                           evaluation};
     for (Quantity q : demand.quantities) {
-        if (const Proportional* rule = proportional(q)) {
+        if (const std::optional<Proportional> rule = proportional(q)) {
             measure_proportional(context, q, *rule);
         } else if (q == Quantity::amplitude) {
             measure_amplitude(context);

@@ -1,25 +1,102 @@
 #include "design/operating_point.hpp"
 
-#include "orbit/contact_sequence.hpp"
+#include "design/integrators.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <stdexcept>
 
 namespace percuss::design {
 namespace {
 
-using orbit::Orbit;
-using std::numbers::pi;
+/// Free orbits are looked for down to this share of the operating frequency: past it the free branch must have been
+/// followed for all its orbits at the frequency itself to be known, since a softening branch turns back up at a fold
+/// below.
+constexpr double followed_past = 0.93;
 
-bool counts(const Orbit& orbit, bool must_strike) { return orbit.ok() && !(must_strike && orbit.contacts.empty()); }
+EdgeKind to_edge_kind(boundary::Kind kind) {
+    switch (kind) {
+        case boundary::Kind::none: return EdgeKind::none;
+        case boundary::Kind::grazing: return EdgeKind::grazing;
+        case boundary::Kind::fold: return EdgeKind::fold;
+        case boundary::Kind::flip: return EdgeKind::flip;
+        case boundary::Kind::torus: return EdgeKind::torus;
+    }
+    return EdgeKind::none;
+}
 
-/// The impacting orbit at `omega`, which the free motion falls to below the edge; from a little further down where the
-/// free orbit itself still stands at `omega`.
-Reached reach_below_edge(const flow::System& system, const flow::State& free_state, double edge_omega, double omega) {
+OperationStatus to_status(boundary::EdgeStatus status) {
+    switch (status) {
+        case boundary::EdgeStatus::found: return OperationStatus::found;
+        case boundary::EdgeStatus::no_impact: return OperationStatus::no_impact;
+        default: return OperationStatus::failed;
+    }
+}
+
+void drive_at(double omega, const DrivenDesign& design, Operation& operation) {
+    operation.system = design.system.at_omega(omega);
+    operation.scout = design.scout.at_omega(omega);
+    operation.point.omega = omega;
+    operation.point.drive_frequency = drive_frequency(omega, design.scaled.scales);
+}
+
+Operation operate_at(double omega, const DrivenDesign& design) {
+    Operation operation;
+    operation.status = OperationStatus::found;
+    operation.point.edge_kind = EdgeKind::given;
+    drive_at(omega, design, operation);
+    return operation;
+}
+
+/// The fold is looked for over twice the margin, so that one just beyond it is still told with its distance; 2 % where
+/// the margin is smaller than that.
+double range_of_fold(double margin) { return std::max(2.0 * margin, 0.02); }
+
+double offset_of(const boundary::GrazingFold& fold) {
+    using Status = boundary::GrazingFold::Status;
+    return fold.status == Status::found ? fold.offset : fold.status == Status::at_once ? 0.0 : absent;
+}
+
+void find_neighbours(const DrivenDesign& design, double margin, boundary::FreeBranch& branch, Operation& operation) {
+    if (operation.edge->kind == boundary::Kind::grazing) {
+        operation.fold = boundary::find_fold_beside(design.system, *operation.edge, range_of_fold(margin));
+        operation.point.fold_offset = offset_of(*operation.fold);
+    }
+    const double omega = operation.point.omega;
+    operation.free_orbits = boundary::free_orbits_at(branch, design.system, omega, followed_past * omega);
+}
+
+Operation operate_below_edge(const DrivenDesign& design, const OperationOptions& options) {
+    if (!design.system.integrator->info().has_stop) {
+        throw std::invalid_argument("drive.frequency = edge needs a stop: stop.law is none");
+    }
+    Operation operation;
+    boundary::FreeBranch branch(design.scout);
+    const boundary::Edge edge = boundary::find_edge(branch, design.system, {}, options.directions);
+    operation.status = to_status(edge.status);
+    operation.reason = edge.reason;
+    operation.point.margin = options.margin;
+    if (!operation.found()) { return operation; }
+    operation.edge = edge.boundary;
+    operation.point.edge_kind = to_edge_kind(edge.boundary.kind);
+    operation.point.edge_omega = edge.boundary.omega;
+    for (const double d : edge.boundary.d_omega) { operation.d_omega.push_back((1.0 - options.margin) * d); }
+    drive_at((1.0 - options.margin) * edge.boundary.omega, design, operation);
+    if (options.find_neighbours) { find_neighbours(design, options.margin, branch, operation); }
+    return operation;
+}
+
+/// The impacting orbit at the operating frequency, which the free motion falls to below the edge.
+Reached reach_below_edge(const Operation& operation) {
+    // Nearer to the edge than this the free orbit, barely pushed, stays close to grazing for hundreds of cycles, and
+    // within the fold beside the edge it is still stable: the impacting orbit is then reached from further down and
+    // followed up.
     constexpr double clear_of_edge = 2e-3;
-    const double start = std::min(omega, edge_omega * (1.0 - clear_of_edge));
-    Reached reached = reach_orbit(system.at_omega(start), free_state, 1, true);
+    const boundary::Boundary& edge = *operation.edge;
+    const flow::System& system = operation.system;
+    const double omega = system.omega();
+    const double start = std::min(omega, edge.omega * (1.0 - clear_of_edge));
+    Reached reached = reach_orbit(system.at_omega(start), edge.state, 1, true);
     if (start == omega || !reached.orbit.ok()) { return reached; }
     auto moved = continue_orbit(system.at_omega(start), reached.orbit, omega);
     if (!moved) {
@@ -34,98 +111,27 @@ Reached reach_below_edge(const flow::System& system, const flow::State& free_sta
 
 }  // namespace
 
-EdgeKind to_edge_kind(boundary::Kind kind) {
-    switch (kind) {
-        case boundary::Kind::none: return EdgeKind::none;
-        case boundary::Kind::grazing: return EdgeKind::grazing;
-        case boundary::Kind::fold: return EdgeKind::fold;
-        case boundary::Kind::flip: return EdgeKind::flip;
-        case boundary::Kind::torus: return EdgeKind::torus;
-    }
-    return EdgeKind::none;
+Operation operate(const DrivenDesign& design, const OperationOptions& options) {
+    const auto given = given_omega(design.actuator, design.scaled, *design.system.integrator);
+    return given ? operate_at(*given, design) : operate_below_edge(design, options);
 }
 
-Reached reach_orbit(const flow::System& system, const flow::State& from, int period, bool must_strike) {
-    Reached reached;
-    reached.kind = Reached::Kind::unsettled;
-    reached.reason = "no orbit of period " + std::to_string(period) + " was reached";
-    flow::State state = from;
-    for (int cycles : {8, 16, 32, 64, 128, 256, 256}) {
-        const auto settled = orbit::settle(system, state, cycles * period);
-        if (!settled) {
-            reached.kind = Reached::Kind::failed;
-            reached.reason = "the motion could not be followed (too many contacts or divergence)";
-            return reached;
-        }
-        state = *settled;
-        const Orbit found = orbit::polish_orbit(system, state, period);
-        if (found.ok() && found.contacts.empty() && orbit::max_multiplier(found) < 1.0) {
-            reached.settled_clear = true;
-        }
-        if (!counts(found, must_strike)) { continue; }
-        const bool stable = orbit::max_multiplier(found) < 1.0;
-        if (stable || reached.kind != Reached::Kind::unstable) { reached.orbit = found; }
-        reached.kind = stable ? Reached::Kind::stable : Reached::Kind::unstable;
-        if (stable) {
-            reached.reason.clear();
-            return reached;
-        }
-        reached.reason = "the orbit of period " + std::to_string(period) + " is unstable";
-    }
-    return reached;
+Reached reach_motion(const Operation& operation) {
+    return operation.edge ? reach_below_edge(operation) : reach_from_rest(operation.system, 1);
 }
 
-std::optional<Orbit> stable_orbit_from(const flow::System& system, const flow::State& from) {
-    const auto settled = orbit::settle(system, from, 48);
-    if (!settled) { return std::nullopt; }
-    const Orbit found = orbit::polish_orbit(system, *settled, 1);
-    if (!found.ok() || !(orbit::max_multiplier(found) < 1.0)) { return std::nullopt; }
-    return found;
-}
-
-std::optional<Orbit> continue_orbit(const flow::System& system, const Orbit& start, double to_omega) {
-    Orbit current = start;
-    double omega = system.omega();
-    double step = to_omega - omega;
-    const double smallest = 1e-7 * std::abs(to_omega);
-    while (omega != to_omega) {
-        const double target = std::abs(to_omega - omega) <= std::abs(step) ? to_omega : omega + step;
-        const Orbit next = orbit::find_orbit(system.at_omega(target), current.map, current.state);
-        const bool same = next.ok() && next.contacts.size() == current.contacts.size();
-        if (same) {
-            current = next;
-            omega = target;
-        } else {
-            step *= 0.5;
-            if (std::abs(step) < smallest) { return std::nullopt; }
-        }
-    }
-    return current;
-}
-
-EdgeOperation operate_at_edge(const flow::System& system, const OperationOptions& options) {
-    EdgeOperation operation;
-    boundary::FreeBranch branch(options.scout != nullptr ? *options.scout : system);
-    operation.edge = boundary::find_edge(branch, system, {}, options.directions);
-    if (operation.edge.status != boundary::EdgeStatus::found) { return operation; }
-    const boundary::Boundary& edge = operation.edge.boundary;
-    operation.omega = (1.0 - options.margin) * edge.omega;
-    flow::State below = edge.state;
-    if (options.check_neighbours) {
-        if (edge.kind == boundary::Kind::grazing) {
-            operation.fold = boundary::find_fold_beside(system, edge, std::max(2.0 * options.margin, 0.02));
-        }
-        operation.free_orbits = boundary::free_orbits_at(branch, system, operation.omega, 0.93 * operation.omega);
-    }
-    operation.reached = reach_below_edge(system, below, edge.omega, operation.omega);
-    return operation;
-}
-
-boundary::FreeOrbitsAt free_orbits_from_above(const flow::System& system, const flow::System& scout, double omega) {
-    boundary::FreeBranch branch(scout);
+boundary::FreeOrbitsAt free_orbits_at(const Operation& operation) {
+    if (operation.free_orbits) { return *operation.free_orbits; }
+    const flow::System& system = operation.system;
+    const double omega = system.omega();
     const double resonance = system.integrator->linear_resonance(system.parameters);
+    boundary::FreeBranch branch(operation.scout);
+    // From three times the resonance, as the edge is, or from above the frequency; higher still where rest is too far
+    // from the orbit there for Newton's method. 100 times the resonance is beyond any motion of interest.
     for (double ratio = std::max(3.0, 1.5 * omega / resonance); ratio < 100.0; ratio *= 1.7) {
-        if (branch.start(ratio * resonance)) { return boundary::free_orbits_at(branch, system, omega, 0.93 * omega); }
+        if (branch.start(ratio * resonance)) {
+            return boundary::free_orbits_at(branch, system, omega, followed_past * omega);
+        }
     }
     return {};
 }

@@ -1,14 +1,20 @@
 #include "design/quantity.hpp"
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace percuss::design {
 
 namespace {
 
-using model::Family;
+constexpr std::size_t index(Quantity quantity) { return static_cast<std::size_t>(quantity); }
 
-constexpr std::array<QuantityInfo, quantity_count> table = {{
+constexpr std::size_t general_count = index(Quantity::first_of_actuators);
+
+constexpr std::array<QuantityInfo, general_count> general = {{
     {Quantity::peak_force, "peak_force", "N", "largest force on the stop over one period", true},
     {Quantity::amplitude, "amplitude", "m", "half the distance between the extrema of the displacement", true},
     {Quantity::drive_frequency, "drive_frequency", "Hz", "frequency of the drive", true},
@@ -18,9 +24,6 @@ constexpr std::array<QuantityInfo, quantity_count> table = {{
     {Quantity::stop_work, "stop_work", "J", "energy dissipated in the stop per period", true},
     {Quantity::rig_force, "rig_force", "N", "largest inertia force of the moving mass, the reaction on the rig", true},
     {Quantity::max_multiplier, "max_multiplier", "1", "largest modulus of the Floquet multipliers", true},
-    {Quantity::electric_field, "electric_field", "V/m", "largest true electric field in a membrane", true},
-    {Quantity::drive_current, "drive_current", "A", "largest current per side, all layers", true},
-    {Quantity::apparent_power, "apparent_power", "VA", "drive voltage times drive_current", true},
     {Quantity::contacts, "contacts", "1", "impacts per period", false},
     {Quantity::period, "period", "1", "period of the motion in drive cycles", false},
     {Quantity::band_lower, "band_lower", "Hz", "lower end of the single-stable impact band", true},
@@ -28,55 +31,78 @@ constexpr std::array<QuantityInfo, quantity_count> table = {{
 }};
 
 constexpr bool table_is_in_order() {
-    for (std::size_t i = 0; i < quantity_count; ++i) {
-        if (table[i].quantity != static_cast<Quantity>(i)) { return false; }
+    for (std::size_t i = 0; i < general_count; ++i) {
+        if (general[i].quantity != static_cast<Quantity>(i)) { return false; }
     }
     return true;
 }
 static_assert(table_is_in_order());
 
-constexpr std::array mechanical = {Quantity::peak_force,      Quantity::amplitude,    Quantity::drive_frequency,
-                                   Quantity::impact_velocity, Quantity::contact_time, Quantity::impulse,
-                                   Quantity::stop_work,       Quantity::rig_force,    Quantity::max_multiplier,
-                                   Quantity::contacts,        Quantity::period,       Quantity::band_lower,
-                                   Quantity::band_upper};
+/// In reports, what an actuator brings stands before the numbers of contacts and cycles.
+constexpr std::size_t before_own = index(Quantity::contacts);
 
-constexpr std::array electromechanical = {
-    Quantity::peak_force,     Quantity::amplitude,      Quantity::drive_frequency, Quantity::impact_velocity,
-    Quantity::contact_time,   Quantity::impulse,        Quantity::stop_work,       Quantity::rig_force,
-    Quantity::max_multiplier, Quantity::electric_field, Quantity::drive_current,   Quantity::apparent_power,
-    Quantity::contacts,       Quantity::period,         Quantity::band_lower,      Quantity::band_upper};
+/// The general table and behind it the rows of the actuators.
+class QuantityTable {
+public:
+    QuantityTable()
+        : infos_(general.begin(), general.end()),
+          own_(general_count, nullptr),
+          of_(general_count, nullptr) {
+        for (const model::Actuator* actuator : model::actuators()) {
+            std::vector<Quantity> reported;
+            for (std::size_t i = 0; i < before_own; ++i) { reported.push_back(general[i].quantity); }
+            for (const model::OwnQuantity& row : actuator->quantities) {
+                const auto quantity = static_cast<Quantity>(infos_.size());
+                infos_.push_back({quantity, row.name, row.unit, row.meaning, true});
+                own_.push_back(&row);
+                of_.push_back(actuator);
+                reported.push_back(quantity);
+            }
+            for (std::size_t i = before_own; i < general_count; ++i) { reported.push_back(general[i].quantity); }
+            reported_.emplace_back(actuator, std::move(reported));
+        }
+        if (infos_.size() > quantity_count) { throw std::logic_error("design: quantity_count is too small"); }
+    }
+    [[nodiscard]] const std::vector<QuantityInfo>& infos() const { return infos_; }
+    [[nodiscard]] const model::OwnQuantity* own(Quantity q) const { return own_.at(index(q)); }
+    [[nodiscard]] const model::Actuator* actuator_of(Quantity q) const { return of_.at(index(q)); }
+    [[nodiscard]] std::span<const Quantity> reported(const model::Actuator& actuator) const {
+        const auto row = std::find_if(reported_.begin(), reported_.end(),
+                                      [&](const auto& candidate) { return candidate.first == &actuator; });
+        if (row == reported_.end()) { throw std::invalid_argument("design: an actuator that is not in the registry"); }
+        return row->second;
+    }
+
+private:
+    std::vector<QuantityInfo> infos_;
+    std::vector<const model::OwnQuantity*> own_;  ///< null: general
+    std::vector<const model::Actuator*> of_;
+    std::vector<std::pair<const model::Actuator*, std::vector<Quantity>>> reported_;
+};
+
+const QuantityTable& table() {
+    static const QuantityTable quantities;
+    return quantities;
+}
 
 }  // namespace
 
-const QuantityInfo& quantity_info(Quantity quantity) { return table.at(static_cast<std::size_t>(quantity)); }
+const QuantityInfo& quantity_info(Quantity quantity) { return table().infos().at(index(quantity)); }
 
 std::optional<Quantity> find_quantity(std::string_view name) {
-    for (const QuantityInfo& info : table) {
+    for (const QuantityInfo& info : table().infos()) {
         if (info.name == name) { return info.quantity; }
     }
     return std::nullopt;
 }
 
-std::string_view unavailable(Quantity quantity, Family family) {
-    switch (quantity) {
-        case Quantity::electric_field:
-        case Quantity::drive_current:
-        case Quantity::apparent_power:
-            return family == Family::dielectric_elastomer_si
-                     ? ""
-                     : "exists only for dielectric elastomer problems given in SI units";
-        default: return "";
-    }
+const model::OwnQuantity* own_quantity(Quantity quantity) { return table().own(quantity); }
+
+std::string_view unavailable(Quantity quantity, const model::Actuator& actuator) {
+    const model::Actuator* owner = table().actuator_of(quantity);
+    return owner == nullptr || owner == &actuator ? "" : owner->quantities_only_for;
 }
 
-std::span<const Quantity> reported_quantities(Family family) {
-    switch (family) {
-        case Family::dielectric_elastomer_si: return electromechanical;
-        case Family::dielectric_elastomer_nondimensional:
-        case Family::spring_mass: return mechanical;
-    }
-    throw std::invalid_argument("design: unknown family");
-}
+std::span<const Quantity> reported_quantities(const model::Actuator& actuator) { return table().reported(actuator); }
 
 }  // namespace percuss::design

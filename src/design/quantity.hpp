@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The quantities a user can ask for, limit or optimise, under the names used in files, reports and code.
+/// The quantities a user can ask for, limit or optimise, under the names used in files, reports and code: those that
+/// every actuator has, and those that the rows of the registry bring.
 
 #include "model/specification.hpp"
 
@@ -13,6 +14,7 @@
 
 namespace percuss::design {
 
+/// Names of the general ones. Those of actuators follow behind them in the order of the registry: find_quantity().
 enum class Quantity : std::uint8_t {
     peak_force,
     amplitude,
@@ -23,16 +25,14 @@ enum class Quantity : std::uint8_t {
     stop_work,
     rig_force,
     max_multiplier,
-    electric_field,
-    drive_current,
-    apparent_power,
     contacts,
     period,
     band_lower,
     band_upper,
-    count
+    first_of_actuators
 };
-inline constexpr std::size_t quantity_count = static_cast<std::size_t>(Quantity::count);
+/// Room for all of them.
+inline constexpr std::size_t quantity_count = 24;
 
 struct QuantityInfo {
     Quantity quantity;
@@ -45,12 +45,13 @@ struct QuantityInfo {
 const QuantityInfo& quantity_info(Quantity quantity);
 std::optional<Quantity> find_quantity(std::string_view name);
 
-/// Why this quantity cannot be had for a problem of this family, or an empty string. electric_field, drive_current and
-/// apparent_power exist only for SI dielectric elastomer problems; band_lower and band_upper need branch tracing,
-/// which this version does not have.
-std::string_view unavailable(Quantity quantity, model::Family family);
+/// The actuator's own description of a quantity, or null for a general one.
+const model::OwnQuantity* own_quantity(Quantity quantity);
 
-/// The order in which quantities are reported for a family: all those available.
-std::span<const Quantity> reported_quantities(model::Family family);
+/// Why this quantity cannot be had for a problem of this actuator, or an empty string.
+std::string_view unavailable(Quantity quantity, const model::Actuator& actuator);
+
+/// The order in which quantities are reported for an actuator: all those available.
+std::span<const Quantity> reported_quantities(const model::Actuator& actuator);
 
 }  // namespace percuss::design

@@ -1,13 +1,13 @@
 #include "design/sampled_check.hpp"
 
 #include "attractor/ensemble.hpp"
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "model/number_text.hpp"
 
 namespace percuss::design {
 namespace {
 
-Attractor report(const SampledCase& c, const attractor::Motion& motion) {
+Attractor report(const SampledCase& c, const attractor::Attractor& motion) {
     Attractor out;
     out.period = motion.period;
     out.kind = attractor::to_string(motion.kind);
@@ -19,7 +19,7 @@ Attractor report(const SampledCase& c, const attractor::Motion& motion) {
     return out;
 }
 
-std::string name_of(const attractor::Motion& motion) {
+std::string name_of(const attractor::Attractor& motion) {
     const std::string kind(attractor::to_string(motion.kind));
     return motion.period > 0 ? "motion of period " + std::to_string(motion.period) : kind + " motion";
 }
@@ -27,9 +27,11 @@ std::string name_of(const attractor::Motion& motion) {
 /// Every motion that the starts lead to, the tuned one left out.
 std::vector<Attractor> list_others(const SampledCase& c, const attractor::Systems& systems, const attractor::Box& box,
                                    const attractor::EnsembleOptions& options) {
-    const auto ensemble = attractor::find_motions(systems, box, options, {&c.orbit, 1});
+    const auto ensemble = attractor::find_attractors(systems, box, options, {&c.orbit, 1});
     std::vector<Attractor> others;
-    for (std::size_t i = 1; i < ensemble.motions.size(); ++i) { others.push_back(report(c, ensemble.motions[i])); }
+    for (std::size_t i = 1; i < ensemble.attractors.size(); ++i) {
+        others.push_back(report(c, ensemble.attractors[i]));
+    }
     return others;
 }
 
@@ -44,6 +46,7 @@ TierTwo check_tier_two(const SampledCase& c) {
     options.seed = c.sampling.seed;
     options.jobs = c.sampling.jobs;
     options.max_cycles = c.sampling.cycles;
+    options.cancelled = c.cancelled;
     const attractor::Refutation answer = attractor::refute(systems, c.orbit, box, options);
 
     TierTwo result;
@@ -78,8 +81,8 @@ TierTwo check_tier_two(const SampledCase& c) {
             u.checked = "tier 2: no counterexample among " + starts + ", but " + std::to_string(answer.unclassified) +
                         " of them could not be classified";
             break;
-        case Status::stopped:
-        case Status::not_run: u.checked = "tier 2: stopped before it was complete"; break;
+        case Status::cancelled:
+        case Status::not_run: u.checked = "tier 2: cancelled before it was complete"; break;
     }
     return result;
 }

@@ -5,6 +5,7 @@
 #include "design/evaluation.hpp"
 #include "flow/flow.hpp"
 #include "model/specification.hpp"
+#include "numerics/cancel.hpp"
 #include "orbit/orbit.hpp"
 
 #include <string>
@@ -18,12 +19,13 @@ struct SampledCase {
     const orbit::Orbit& orbit;  ///< the tuned one, stable
     double amplitude = 0.0;     ///< of it, nondimensional: the box of starts is made for it
     const Sampling& sampling;
+    const numerics::CancelRequest& cancelled;
 };
 
 /// Uniform starts over the box of attractor/box.hpp, each followed until it is captured (attractor/ensemble.hpp). None
 /// of N elsewhere: verdict unique, which means not refuted; other basins then hold less than missed_share_bound of the
 /// box at 95 % confidence. One elsewhere: not_unique, with every motion that the N starts lead to and its share. Starts
-/// that could not be classified, or a motion whose kind is undecided, leave it not_checked.
+/// that could not be classified, or a motion whose kind is undecided, leave it not_checked; so does being cancelled.
 struct TierTwo {
     Uniqueness uniqueness;
     std::string rejection;  ///< empty unless not_unique

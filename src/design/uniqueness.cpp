@@ -1,6 +1,7 @@
 #include "design/uniqueness.hpp"
 
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
+#include "orbit/polish.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,9 @@
 /// \file
 /// Tier 1 of the uniqueness check: is the tuned orbit alone among the period-1 motions?
 
+#include "boundary/edge.hpp"
 #include "design/evaluation.hpp"
-#include "design/operating_point.hpp"
+#include "design/reach.hpp"
 
 #include <optional>
 #include <string>

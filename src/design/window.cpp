@@ -3,7 +3,7 @@
 #include "boundary/critical.hpp"
 #include "branch/trace.hpp"
 #include "design/families.hpp"
-#include "design/scene.hpp"
+#include "design/integrators.hpp"
 #include "orbit/polish.hpp"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ flow::System at_design(const flow::System& system, const Specification& spec, do
 boundary::CriticalPoint solve_end(const flow::System& system, const Specification& spec, const WindowEnd& guess,
                                   std::span<const Key> keys) {
     const flow::System here = at_design(system, spec, guess.omega);
-    const flow::Family family = frequency_family(here);
+    const flow::ParameterFamily family = frequency_family(here);
     std::vector<flow::ParameterVector> directions;
     const auto omega = static_cast<std::size_t>(system.integrator->info().omega);
     for (const Key key : keys) {
@@ -123,7 +123,7 @@ Intruder find_window(const flow::System& system, const Specification& design, co
     options.to = range_above * system.omega();
     options.size = motion_size(system);
     options.max_points = 4000;
-    const flow::Family family = frequency_family(system);
+    const flow::ParameterFamily family = frequency_family(system);
     const branch::Branch branch =
         branch::trace_both_ways(family, {orbit::motion_of(system, orbit), system.omega(), 1.0, {}}, options);
     if (branch.boundaries.size() < 2) {
@@ -157,7 +157,7 @@ Intruder find_window(const Evaluator& evaluator, const Specification& design, do
     const model::Scales scales = model::scale(design).scales;
     for (const Attractor& attractor : attractors) {
         if (attractor.period < 1) { continue; }
-        const flow::State state = from_user(attractor.state, "attractor", scales, system.states());
+        const flow::State state = from_user(attractor.state, "attractor", *design.type, scales, system.states());
         const orbit::Orbit polished = orbit::polish_orbit(system, state, attractor.period);
         if (!polished.ok()) {
             intruder.trouble = "the motion that refutes it could not be polished";

@@ -38,12 +38,15 @@ AugmentedSystem::AugmentedSystem(const RightHandSide& rhs, const ParameterVector
         places_.drive_work = next++;
         places_.dissipation = next++;
     }
+    for (int k = 0; k < rhs.info().means; ++k) {
+        if ((request.observe & observe_mean(k)) != 0U) { places_.mean[at(k)] = next++; }
+    }
     places_.count = next - states_;
 
     if (request.stop == StopMode::held) {
         overlap_size_ = std::clamp(std::abs(request.duration), smallest_overlap, 1.0);
     }
-    const bool has_stop = rhs.contact_law() != ContactLaw::none;
+    const bool has_stop = model::has_stop(rhs.contact_law());
     const std::size_t gap = at(rhs.info().gap);
     origin_ = rhs.centre(parameters) + (has_stop ? parameters[gap] : 0.0);
     for (int lane = 0; lane < lanes_; ++lane) {
@@ -54,6 +57,10 @@ AugmentedSystem::AugmentedSystem(const RightHandSide& rhs, const ParameterVector
         origin_d_[at(lane)] =
             rhs.centre_derivative(parameters, direction.parameter) + (has_stop ? direction.parameter[gap] : 0.0);
     }
+}
+
+bool AugmentedSystem::watches_means() const {
+    return std::any_of(places_.mean.begin(), places_.mean.end(), [](int place) { return place >= 0; });
 }
 
 double AugmentedSystem::natural_size(int column, int i) const {
@@ -124,6 +131,13 @@ void AugmentedSystem::integral_rate(double t, const double* values, bool touchin
         out[places_.drive_work - states_] = power.drive * per_phase;
         out[places_.dissipation - states_] = power.loss * per_phase;
     }
+    if (watches_means()) {
+        Means mean{};
+        rhs_.means(parameters_, phase(t), lift(values), {}, mean, nullptr);
+        for (std::size_t k = 0; k < mean.size(); ++k) {
+            if (places_.mean[k] >= 0) { out[places_.mean[k] - states_] = mean[k] * per_phase; }
+        }
+    }
 }
 
 void AugmentedSystem::integral_rates(double t, const Columns& states, bool touching, const MutableColumns& out) const {
@@ -159,6 +173,20 @@ void AugmentedSystem::integral_rates(double t, const Columns& states, bool touch
             const double slowing = omega_d(lane) * per_phase;
             rate[drive] = power_d[at(lane)].drive * per_phase - out[0][drive] * slowing;
             rate[loss] = power_d[at(lane)].loss * per_phase - out[0][loss] * slowing;
+        }
+    }
+    if (watches_means()) {
+        Means mean{};
+        std::array<Means, at(max_lanes)> mean_d{};
+        rhs_.means(parameters_, phase(t), lift(y), directions(states), mean, mean_d.data());
+        for (std::size_t k = 0; k < mean.size(); ++k) {
+            if (places_.mean[k] < 0) { continue; }
+            const int place = places_.mean[k] - states_;
+            out[0][place] = mean[k] * per_phase;
+            for (int lane = 0; lane < lanes_; ++lane) {
+                const double slowing = omega_d(lane) * per_phase;
+                out[at(1 + lane)][place] = mean_d[at(lane)][k] * per_phase - out[0][place] * slowing;
+            }
         }
     }
 }

@@ -16,7 +16,7 @@
 
 namespace percuss::flow {
 
-inline constexpr int max_integrals = 4;
+inline constexpr int max_integrals = 4 + model::max_means;
 inline constexpr int max_block = max_states + max_integrals;
 inline constexpr int max_columns = 1 + max_lanes;
 
@@ -34,7 +34,15 @@ struct IntegralPlaces {
     int stop_work = -1;
     int drive_work = -1;
     int dissipation = -1;
+    std::array<int, model::max_means> mean = no_means();
     int count = 0;
+
+private:
+    static constexpr std::array<int, model::max_means> no_means() {
+        std::array<int, model::max_means> none{};
+        none.fill(-1);
+        return none;
+    }
 };
 
 class AugmentedSystem {
@@ -104,6 +112,7 @@ private:
         return directions_[static_cast<std::size_t>(lane)].parameter[static_cast<std::size_t>(i)];
     }
     [[nodiscard]] State lift(const double* values) const;
+    [[nodiscard]] bool watches_means() const;
 
     const RightHandSide& rhs_;
     ParameterVector parameters_;

@@ -16,6 +16,8 @@ std::string_view to_string(Status status) {
         case Status::too_many_steps: return "too many integration steps";
         case Status::diverged: return "diverged";
         case Status::unsupported: return "not supported by this integrator";
+        case Status::cancelled: return "cancelled";
+        case Status::budget_spent: return "the budget of integration steps is spent";
     }
     return "unknown";
 }
@@ -64,13 +66,49 @@ System System::with(const ParameterVector& p) const {
     return other;
 }
 
+Status Cost::allowance() const {
+    if (cancelled && cancelled()) { return Status::cancelled; }
+    return steps < step_budget ? Status::ok : Status::budget_spent;
+}
+
 void System::run(const Request& request, Result& result) const {
-    integrator->run(parameters, request, result);
-    if (cost != nullptr) {
-        cost->phase += request.duration < 0.0 ? -request.duration : request.duration;
-        cost->runs += 1;
-        cost->steps += result.steps;
+    if (cost == nullptr) {
+        integrator->run(parameters, request, result);
+        return;
     }
+    const Status allowance = cost->allowance();
+    if (allowance != Status::ok) {
+        reset(result);
+        result.status = allowance;
+        return;
+    }
+    Request limited = request;
+    limited.max_steps = std::min(request.max_steps, cost->step_budget - cost->steps);
+    if (limited.cancelled == nullptr) { limited.cancelled = &cost->cancelled; }
+    integrator->run(parameters, limited, result);
+    if (result.status == Status::too_many_steps && limited.max_steps < request.max_steps) {
+        result.status = Status::budget_spent;
+    }
+    cost->phase += request.duration < 0.0 ? -request.duration : request.duration;
+    cost->runs += 1;
+    cost->steps += result.steps;
+}
+
+void System::run_ensemble(const EnsembleRequest& request, std::span<EnsembleMember> members) const {
+    if (cost == nullptr) {
+        integrator->run_ensemble(parameters, request, members);
+        return;
+    }
+    const Status allowance = cost->allowance();
+    if (allowance != Status::ok) {
+        check(request, members.size());
+        for (std::size_t i = 0; i < request.states.size(); ++i) { members[i] = {allowance, request.states[i], 0}; }
+        return;
+    }
+    EnsembleRequest limited = request;
+    if (limited.cancelled == nullptr) { limited.cancelled = &cost->cancelled; }
+    integrator->run_ensemble(parameters, limited, members);
+    cost->phase += request.duration * static_cast<double>(request.states.size());
 }
 
 void Integrator::run_ensemble(const ParameterVector& parameters, const EnsembleRequest& request,
@@ -82,6 +120,7 @@ void Integrator::run_ensemble(const ParameterVector& parameters, const EnsembleR
     one.stop = request.stop;
     one.max_events = request.max_events;
     one.max_steps = request.max_steps;
+    one.cancelled = request.cancelled;
     Result result;
     for (std::size_t i = 0; i < request.states.size(); ++i) {
         one.state = request.states[i];

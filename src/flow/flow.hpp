@@ -4,22 +4,26 @@
 /// actuator only through these types; everything here is nondimensional, and time is the drive phase
 /// theta = omega tau.
 
+#include "model/scene.hpp"
+#include "numerics/cancel.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
 
 namespace percuss::flow {
 
-inline constexpr int max_states = 4;
-inline constexpr int max_parameters = 13;
+inline constexpr int max_states = model::max_states;
+inline constexpr int max_parameters = model::max_parameters;
 inline constexpr int max_lanes = 8;
 
-using State = std::array<double, max_states>;                ///< unused entries are zero
-using ParameterVector = std::array<double, max_parameters>;  ///< meaning given by the system's SystemInfo
-using Lanes = std::array<double, max_lanes>;                 ///< derivatives along the directions of a request
+using State = model::StateVector;             ///< unused entries are zero
+using ParameterVector = model::Parameters;    ///< meaning given by the system's SystemInfo
+using Lanes = std::array<double, max_lanes>;  ///< derivatives along the directions of a request
 
 /// A scalar result with its derivatives along the requested directions.
 struct Sensitive {
@@ -48,11 +52,14 @@ enum Observe : std::uint32_t {
     observe_extrema = 1U << 0U,       ///< x_max, x_min
     observe_force = 1U << 1U,         ///< peak_force, impulse, stop_work, contact_time, impact_velocity
     observe_acceleration = 1U << 2U,  ///< peak of |x''|
-    observe_field = 1U << 3U,         ///< peak of phi lambda_1 over both membranes (dielectric elastomer only)
-    observe_current = 1U << 4U,       ///< peak of |d(s phi)/dtau| over both membranes (dielectric elastomer only)
-    observe_energy = 1U << 5U,        ///< drive work and viscous dissipation
-    observe_all = (1U << 6U) - 1U,
+    observe_energy = 1U << 3U,        ///< drive work and viscous dissipation
+    first_peak_bit = 1U << 8U,        ///< the peak signals of the system, a bit each: see observe_peak()
+    first_mean_bit = 1U << 16U,       ///< the integrals of its mean signals, likewise: see observe_mean()
+    observe_all = 0xffffffffU,        ///< whatever the system has
 };
+/// Bit of peak signal k, and of mean signal k, as SystemInfo numbers them.
+constexpr std::uint32_t observe_peak(int k) { return first_peak_bit << static_cast<unsigned>(k); }
+constexpr std::uint32_t observe_mean(int k) { return first_mean_bit << static_cast<unsigned>(k); }
 
 /// One contact met by a run, times as phase theta. A contact under way at the start or end of the run is marked open
 /// on that side and its phase is that of the start or end of the run.
@@ -67,18 +74,18 @@ struct Contact {
 };
 
 struct Observables {
-    Sensitive x_max, x_min;       ///< displacement
-    Sensitive peak_force;         ///< max of f_stop; zero when there is no contact
-    Sensitive impact_velocity;    ///< largest x' at entry
-    Sensitive contact_time;       ///< nondimensional time tau, summed over contacts
-    Sensitive impulse;            ///< integral of f_stop dtau
-    Sensitive stop_work;          ///< integral of f_stop x' dtau
-    Sensitive peak_acceleration;  ///< max of |x''|
-    Sensitive peak_field;         ///< max of phi_i lambda_1i
-    Sensitive peak_current;       ///< max of |d(s_i phi_i)/dtau|
-    Sensitive drive_work;         ///< n sum of integral u phi^2 x' dtau, or integral F cos(theta) x' dtau
-    Sensitive dissipation;        ///< viscous work in the actuator, stop excluded
-    double theta_x_max = 0.0;     ///< phases at which the extrema are reached
+    Sensitive x_max, x_min;                          ///< displacement
+    Sensitive peak_force;                            ///< max of f_stop; zero when there is no contact
+    Sensitive impact_velocity;                       ///< largest x' at entry
+    Sensitive contact_time;                          ///< nondimensional time tau, summed over contacts
+    Sensitive impulse;                               ///< integral of f_stop dtau
+    Sensitive stop_work;                             ///< integral of f_stop x' dtau
+    Sensitive peak_acceleration;                     ///< max of |x''|
+    Sensitive drive_work;                            ///< work done by the drive
+    Sensitive dissipation;                           ///< work turned into heat in the actuator, stop excluded
+    std::array<Sensitive, model::max_peaks> peak{};  ///< largest value (or modulus) of each peak signal of the system
+    std::array<Sensitive, model::max_means> mean{};  ///< integral over tau of each of its mean signals
+    double theta_x_max = 0.0;                        ///< phases at which the extrema are reached
     double theta_x_min = 0.0;
     double theta_peak_force = 0.0;
     double runner_up_force = 0.0;  ///< largest force among the other contacts: a tie is a kink of peak_force
@@ -91,6 +98,8 @@ enum class Status : std::uint8_t {
     too_many_steps,
     diverged,  ///< the state left the range where the model means anything, or became NaN
     unsupported,
+    cancelled,     ///< the caller wanted no more (Request::cancelled)
+    budget_spent,  ///< the steps that the caller granted (Cost::step_budget) are used up
 };
 
 std::string_view to_string(Status status);
@@ -106,6 +115,7 @@ struct Request {
     bool full_derivatives = false;   ///< derivative series to the full order (see taylor.hpp): for final answers
     int max_events = 128;
     long max_steps = 200000;
+    const numerics::CancelRequest* cancelled = nullptr;  ///< asked every few hundred steps; null: never
 };
 
 struct Result {
@@ -134,6 +144,7 @@ struct EnsembleRequest {
     StopMode stop = StopMode::hybrid;
     int max_events = 128;  ///< per start
     long max_steps = 200000;
+    const numerics::CancelRequest* cancelled = nullptr;  ///< asked every few hundred steps; null: never
 };
 
 /// What became of one of them. Its numbers depend on that start alone, never on its neighbours.
@@ -142,6 +153,11 @@ struct EnsembleMember {
     State state{};     ///< at the end
     int contacts = 0;  ///< entries met
 };
+
+template <class AnyRequest>
+bool is_cancelled(const AnyRequest& request) {
+    return request.cancelled != nullptr && *request.cancelled && (*request.cancelled)();
+}
 
 /// Throws std::invalid_argument when the duration is negative or NaN, or when there are fewer members than starts.
 void check(const EnsembleRequest& request, std::size_t members);
@@ -154,20 +170,19 @@ struct SystemInfo {
     int gap = 0;        ///< index of the gap
     int stiffness = 0;  ///< index of the stop stiffness k
     int damping = 0;    ///< index of the stop damping delta_i
+    int drive = 0;      ///< index of the amplitude of the drive
     std::array<std::string_view, max_parameters> names{};
-    /// Without the stop the system is unchanged under state -> reflect(state), theta -> theta + pi, where reflect
-    /// mirrors x about the centre, negates x' and permutes the remaining states by `mirror`.
+    /// Without the stop the system, where Integrator::symmetric() says so, is unchanged under
+    /// state -> reflect(state), theta -> theta + pi, where reflect mirrors x about the centre, negates x' and permutes
+    /// the remaining states by `mirror`.
     std::array<int, max_states> mirror{};
-    bool observes_membranes = false;  ///< peak_field and peak_current exist
-    bool releases_on_force = false;   ///< contact ends when the force has gone to zero (no-tension law)
-    bool has_stop = true;             ///< false: the law is "none", gap and stiffness mean nothing
+    std::span<const model::PeakSignal> peaks{};  ///< its peak signals: Observables::peak
+    int means = 0;                               ///< number of its mean signals: Observables::mean
+    bool releases_on_force = false;              ///< contact ends when the force has gone to zero (no-tension law)
+    bool has_stop = true;                        ///< false: the law is "none", gap and stiffness mean nothing
 };
 
-/// Lower and upper ends of an interval for every state.
-struct StateRange {
-    State lower{};
-    State upper{};
-};
+using StateRange = model::StateRange;
 
 /// An integrator of one hybrid system. Stateless: may be shared between threads.
 class Integrator {
@@ -204,14 +219,20 @@ public:
     [[nodiscard]] virtual StateRange internal_range(const ParameterVector& p, double reach) const;
     /// Natural frequency of small motions about rest at the mean drive, viscous states frozen, nondimensional rad.
     [[nodiscard]] virtual double linear_resonance(const ParameterVector& p) const = 0;
+    /// Whether the free system has the half-cycle mirror symmetry of SystemInfo::mirror at these parameters.
+    [[nodiscard]] virtual bool symmetric(const ParameterVector& p) const = 0;
 };
 
-/// Work done so far, for `cost` in results. Kept by the caller, one per evaluation.
+/// Work done so far, for `cost` in results, and the limits on it. Kept by the caller, one per evaluation.
 struct Cost {
     double phase = 0.0;  ///< integrated theta; divide by 2 pi for drive cycles
     long runs = 0;
     long steps = 0;
+    numerics::CancelRequest cancelled{};                  ///< runs end early, and none begins, once this is true
+    long step_budget = std::numeric_limits<long>::max();  ///< likewise once so many steps are taken
     [[nodiscard]] double periods() const;
+    /// ok, or why no run may begin: cancelled, budget_spent.
+    [[nodiscard]] Status allowance() const;
 };
 
 /// A system with its parameters fixed: what orbit solvers take.
@@ -225,7 +246,12 @@ struct System {
     [[nodiscard]] System at_omega(double omega) const;
     [[nodiscard]] System with(const ParameterVector& p) const;
     [[nodiscard]] double stop_position() const { return integrator->stop_position(parameters); }
+    [[nodiscard]] bool symmetric() const { return integrator->symmetric(parameters); }
+    /// Within the limits of `cost`, if there is one: a run that they end, or do not let begin, has the status cancelled
+    /// or budget_spent.
     void run(const Request& request, Result& result) const;
+    /// Likewise for many starts; each is charged its phase.
+    void run_ensemble(const EnsembleRequest& request, std::span<EnsembleMember> members) const;
 };
 
 }  // namespace percuss::flow

@@ -1,27 +1,22 @@
 #pragma once
 /// \file
 /// Equations of motion as a function that is evaluated point by point: what the step-by-step backends integrate.
-/// Knows nothing of membranes. Everything is nondimensional; theta = omega tau is the drive phase.
+/// Everything is nondimensional; theta = omega tau is the drive phase.
 
 #include "flow/flow.hpp"
+#include "model/contact_law.hpp"
 
-#include <cstdint>
+#include <array>
 #include <span>
 
 namespace percuss::flow {
-
-/// When the stop acts. kelvin_voigt: while x >= x_stop. no_tension: while x >= x_stop and its force
-/// k (x - x_stop) + delta_i x' is positive. none: never.
-enum class ContactLaw : std::uint8_t { kelvin_voigt, no_tension, none };
-
-/// Signals along the motion whose largest modulus is an observable.
-enum class PeakSignal : std::uint8_t { field, current };
 
 /// Work per unit of tau: done by the drive, and turned into heat in the actuator (stop excluded).
 struct Powers {
     double drive = 0.0;
     double loss = 0.0;
 };
+using Means = std::array<double, model::max_means>;  ///< mean signals, per unit of tau
 
 class RightHandSide {
 public:
@@ -32,7 +27,7 @@ public:
 
     [[nodiscard]] virtual const SystemInfo& info() const = 0;
     [[nodiscard]] int states() const { return info().states; }
-    [[nodiscard]] virtual ContactLaw contact_law() const = 0;
+    [[nodiscard]] virtual model::ContactLaw contact_law() const = 0;
 
     /// rate = d(state)/d(theta), and its exact derivative along each direction (state, parameters and phase moving
     /// together; at most max_lanes of them) in rate_d[0 .. directions.size()). `touching`: the force of the stop acts,
@@ -44,12 +39,12 @@ public:
     virtual void powers(const ParameterVector& p, double theta, const State& state,
                         std::span<const Direction> directions, Powers& value, Powers* value_d) const = 0;
 
-    /// Number of sides that have fields and currents; zero where these observables do not exist.
-    [[nodiscard]] virtual int sides() const { return 0; }
-    /// Value (signed) of a signal on one side, 0 <= side < sides(), and its derivatives likewise in value_d.
-    [[nodiscard]] virtual double signal(PeakSignal which, int side, const ParameterVector& p, double theta,
-                                        const State& state, std::span<const Direction> directions,
-                                        double* value_d) const = 0;
+    /// Value (signed) of a peak signal in one of its parts, and its derivatives likewise in value_d.
+    [[nodiscard]] virtual double peak(int signal, int part, const ParameterVector& p, double theta, const State& state,
+                                      std::span<const Direction> directions, double* value_d) const = 0;
+    /// Values of all mean signals, and their derivatives likewise. Only called where info().means > 0.
+    virtual void means(const ParameterVector& p, double theta, const State& state,
+                       std::span<const Direction> directions, Means& value, Means* value_d) const = 0;
 
     /// Whether the model means anything at this state; false for NaN.
     [[nodiscard]] virtual bool meaningful(const State& state) const = 0;
@@ -61,6 +56,7 @@ public:
     [[nodiscard]] virtual State rest_state(const ParameterVector& p) const = 0;
     [[nodiscard]] virtual StateRange internal_range(const ParameterVector& /*p*/, double /*reach*/) const { return {}; }
     [[nodiscard]] virtual double linear_resonance(const ParameterVector& p) const = 0;
+    [[nodiscard]] virtual bool symmetric(const ParameterVector& p) const = 0;
 
     void rate(const ParameterVector& p, double theta, const State& state, bool touching, State& out) const {
         rates(p, theta, state, touching, {}, out, nullptr);

@@ -9,8 +9,10 @@
 #include "numerics/polynomial_roots.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace percuss::flow {
@@ -56,11 +58,13 @@ public:
             if ((mask_ & observe_extrema) != 0U) { watch_extrema(); }
             if (touching && (mask_ & observe_force) != 0U) { watch_force(); }
             if ((mask_ & observe_acceleration) != 0U) { watch_acceleration(); }
-            if constexpr (Jet::membranes) {
-                if ((mask_ & observe_field) != 0U) { watch_field(); }
-                if ((mask_ & observe_current) != 0U) { watch_current(); }
-            }
+            watch_peaks(std::make_integer_sequence<int, Jet::peaks>{});
             if ((mask_ & observe_energy) != 0U) { watch_energy(); }
+            if constexpr (Jet::means > 0) {
+                for (int k = 0; k < Jet::means; ++k) {
+                    if ((mask_ & observe_mean(k)) != 0U) { watch_mean(k); }
+                }
+            }
             if (event) { remember_end(); }
             first_ = false;
         }
@@ -126,15 +130,16 @@ public:
     [[nodiscard]] const T& impulse() const { return impulse_; }
     [[nodiscard]] const T& stop_work() const { return work_; }
     [[nodiscard]] const Extremum& peak_acceleration() const { return peak_acceleration_; }
-    [[nodiscard]] T peak_field() const {
-        using std::sqrt;
-        if constexpr (Jet::membranes) {
-            return field_.found ? jet_.prestretch() * sqrt(field_.value) : T(0.0);
-        } else {
-            return T(0.0);
+    /// Largest value (or modulus) of peak signal k, zero where none was seen.
+    [[nodiscard]] T peak(int k) const {
+        const Extremum& found = peaks_[static_cast<std::size_t>(k)];
+        if constexpr (Jet::peaks > 0) {
+            if (found.found) { return jet_.peak_value(k, found.value); }
         }
+        return T(0.0);
     }
-    [[nodiscard]] const Extremum& peak_current() const { return current_; }
+    /// Integral over tau of mean signal k.
+    [[nodiscard]] const T& mean(int k) const { return means_[static_cast<std::size_t>(k)]; }
     [[nodiscard]] const T& drive_work() const { return drive_work_; }
     [[nodiscard]] const T& dissipation() const { return dissipation_; }
 
@@ -312,32 +317,30 @@ private:
         maximise(scratch_, order_ - 1, peak_acceleration_, false);
     }
 
-    void watch_field() {
-        for (int side = 0; side < 2; ++side) {
-            for (int n = 0; n < order_; ++n) {
-                T sum(0.0);
-                for (int j = 0; j <= n; ++j) { sum += jet_.s(side, j) * jet_.phi_squared(side, n - j); }
-                scratch_[n] = sum;
-            }
-            maximise(scratch_, order_ - 1, field_, first_);
+    template <int... K>
+    void watch_peaks(std::integer_sequence<int, K...>) {
+        (watch_peak<K>(), ...);
+    }
+    template <int K>
+    void watch_peak() {
+        if ((mask_ & observe_peak(K)) == 0U) { return; }
+        constexpr model::PeakSignal signal = Jet::peak_signal(K);
+        Extremum& best = peaks_[static_cast<std::size_t>(K)];
+        for (int part = 0; part < signal.parts; ++part) {
+            const int degree = jet_.peak_series(K, part, order_, scratch_);
+            maximise(scratch_, degree, best, first_);
+            if (!signal.of_modulus) { continue; }
+            for (int n = 0; n <= degree; ++n) { scratch_[n] = -scratch_[n]; }
+            maximise(scratch_, degree, best, first_);
         }
     }
 
-    void watch_current() {
-        for (int side = 0; side < 2; ++side) {
-            Series charge;
-            for (int n = 0; n < order_; ++n) {
-                T sum(0.0);
-                for (int j = 0; j <= n; ++j) { sum += jet_.s(side, j) * jet_.phi(side, n - j); }
-                charge[n] = sum;
-            }
-            for (int sign : {1, -1}) {
-                for (int n = 0; n + 1 < order_; ++n) {
-                    scratch_[n] = charge[n + 1] * (jet_.omega() * static_cast<Base>(sign * (n + 1)));
-                }
-                maximise(scratch_, order_ - 2, current_, first_);
-            }
+    void watch_mean(int k) {
+        T sum(0.0);
+        for (int n = order_ - 1; n >= 0; --n) {
+            sum = sum * h_ + jet_.mean(k, n) * (Base(1) / static_cast<Base>(n + 1));
         }
+        means_[static_cast<std::size_t>(k)] += sum * h_ * jet_.inverse_omega();
     }
 
     void watch_energy() {
@@ -381,8 +384,9 @@ private:
     bool pending_ = false;
     bool contact_open_since_start_ = false;
     Base open_from_{};
-    Extremum x_max_, negative_x_min_, peak_force_, contact_peak_, impact_velocity_, peak_acceleration_, field_,
-        current_;
+    Extremum x_max_, negative_x_min_, peak_force_, contact_peak_, impact_velocity_, peak_acceleration_;
+    std::array<Extremum, model::max_peaks> peaks_;
+    std::array<T, model::max_means> means_{};
     Base runner_up_{};
     T contact_time_{}, impulse_{}, work_{}, drive_work_{}, dissipation_{};
     T end_acceleration_{}, pending_shift_{};

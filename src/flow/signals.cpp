@@ -9,10 +9,6 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-constexpr PeakSignal peak_signal(SignalKind kind) {
-    return kind == SignalKind::field ? PeakSignal::field : PeakSignal::current;
-}
-
 Columns state_columns(const AugmentedSystem& system, const Extended& y) {
     Columns columns{};
     for (int c = 0; c < system.columns(); ++c) { columns[at(c)] = y.data() + c * system.block(); }
@@ -82,13 +78,11 @@ SignalSample sample(const AugmentedSystem& system, Signal signal, const MotionPo
                                          point.touching, point.along, second);
             return {system.omega() * rate[1], system.omega() * second[1]};
         }
-        case SignalKind::field:
-        case SignalKind::current: break;
+        case SignalKind::peak: break;
     }
     SignalSample result;
-    result.value =
-        system.rhs().signal(peak_signal(signal.kind), signal.side, system.parameters(), system.phase(point.t),
-                            system.state(point.values), {&point.along, 1}, &result.slope);
+    result.value = system.rhs().peak(signal.peak, signal.part, system.parameters(), system.phase(point.t),
+                                     system.state(point.values), {&point.along, 1}, &result.slope);
     return result;
 }
 
@@ -119,12 +113,11 @@ Sensitive sensitive(const AugmentedSystem& system, Signal signal, double t, cons
             }
             return result;
         }
-        case SignalKind::field:
-        case SignalKind::current: break;
+        case SignalKind::peak: break;
     }
     result.value =
-        system.rhs().signal(peak_signal(signal.kind), signal.side, system.parameters(), system.phase(t),
-                            system.state(values), system.directions(state_columns(system, y)), result.d.data());
+        system.rhs().peak(signal.peak, signal.part, system.parameters(), system.phase(t), system.state(values),
+                          system.directions(state_columns(system, y)), result.d.data());
     return result;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Scalar signals along the motion whose turning points matter: the overlap with the stop, the force on the stop, the
-/// acceleration, and the fields and currents of the sides.
+/// acceleration, and the peak signals of the actuator.
 
 #include "flow/augmented_system.hpp"
 #include "flow/bracketed_root.hpp"
@@ -13,11 +13,12 @@
 
 namespace percuss::flow {
 
-enum class SignalKind : std::uint8_t { overlap, stop_force, acceleration, field, current };
+enum class SignalKind : std::uint8_t { overlap, stop_force, acceleration, peak };
 
 struct Signal {
     SignalKind kind = SignalKind::overlap;
-    int side = 0;  ///< for field and current
+    int peak = 0;  ///< which peak signal of the system, and which of its parts
+    int part = 0;
 };
 
 /// A signal at one point: value and slope with respect to t.

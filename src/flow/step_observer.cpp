@@ -18,8 +18,6 @@ Sensitive negative(Sensitive a) {
 
 Sensitive modulus(const Sensitive& a) { return a.value < 0.0 ? negative(a) : a; }
 
-constexpr bool has_modulus(SignalKind kind) { return kind == SignalKind::acceleration || kind == SignalKind::current; }
-
 /// Total derivative of a value at an event: its own at fixed t, and what the motion of the event adds.
 Sensitive moving(Sensitive a, double slope, const Lanes& shift) {
     for (std::size_t j = 0; j < shift.size(); ++j) {
@@ -44,8 +42,9 @@ void jump(const AugmentedSystem& system, Extended& y, double sign) {
 
 }  // namespace
 
-void cross_entry(const AugmentedSystem& system, Extended& y) { jump(system, y, +1.0); }
-void cross_exit(const AugmentedSystem& system, Extended& y) { jump(system, y, -1.0); }
+void saltate(const AugmentedSystem& system, Extended& y, int saltation) {
+    if (saltation != 0) { jump(system, y, -static_cast<double>(saltation)); }
+}
 
 void Peak::raise(const Sensitive& candidate, double at_t) {
     if (!found || candidate.value > best.value) {
@@ -62,19 +61,23 @@ StepObserver::StepObserver(const AugmentedSystem& system, std::uint32_t mask, Re
       mask_(mask),
       result_(result),
       out_(result.observables) {
-    if (observes(observe_acceleration)) { signals_[at(watched_++)] = {SignalKind::acceleration, 0}; }
-    for (int side = 0; side < system.rhs().sides(); ++side) {
-        if (observes(observe_field)) { signals_[at(watched_++)] = {SignalKind::field, side}; }
-        if (observes(observe_current)) { signals_[at(watched_++)] = {SignalKind::current, side}; }
+    if (observes(observe_acceleration)) { signals_[at(watched_++)] = {SignalKind::acceleration}; }
+    const auto peaks = system.rhs().info().peaks;
+    for (int k = 0; k < static_cast<int>(peaks.size()); ++k) {
+        if (!observes(observe_peak(k))) { continue; }
+        for (int part = 0; part < std::min(peaks[at(k)].parts, max_parts); ++part) {
+            signals_[at(watched_++)] = {SignalKind::peak, k, part};
+        }
     }
 }
 
-Peak& StepObserver::peak_of(SignalKind kind) {
-    switch (kind) {
-        case SignalKind::field: return field_;
-        case SignalKind::current: return current_;
-        default: return acceleration_;
-    }
+Peak& StepObserver::peak_of(const Signal& signal) {
+    return signal.kind == SignalKind::peak ? peaks_[at(signal.peak)] : acceleration_;
+}
+
+bool StepObserver::has_modulus(const Signal& signal) const {
+    if (signal.kind == SignalKind::peak) { return system_.rhs().info().peaks[at(signal.peak)].of_modulus; }
+    return signal.kind == SignalKind::acceleration;
 }
 
 void StepObserver::begin(double t, const Extended& y, bool touching) {
@@ -106,8 +109,7 @@ void StepObserver::end(double t, const Extended& y, bool touching) {
     out_.theta_peak_force = force_.found ? system_.phase(force_.t) : 0.0;
     out_.impact_velocity = impact_.best;
     out_.peak_acceleration = acceleration_.best;
-    out_.peak_field = field_.best;
-    out_.peak_current = current_.best;
+    for (std::size_t k = 0; k < peaks_.size(); ++k) { out_.peak[k] = peaks_[k].best; }
 
     const auto integral = [&](int place) {
         Sensitive value;
@@ -124,18 +126,19 @@ void StepObserver::end(double t, const Extended& y, bool touching) {
     out_.stop_work = integral(places.stop_work);
     out_.drive_work = integral(places.drive_work);
     out_.dissipation = integral(places.dissipation);
+    for (std::size_t k = 0; k < places.mean.size(); ++k) { out_.mean[k] = integral(places.mean[k]); }
 }
 
 void StepObserver::offer_ends(double t, const Extended& y, bool touching) {
     if (watches_extrema()) {
-        const Sensitive overlap = sensitive(system_, {SignalKind::overlap, 0}, t, y, touching);
+        const Sensitive overlap = sensitive(system_, {SignalKind::overlap}, t, y, touching);
         x_max_.raise(overlap, t);
         x_min_negative_.raise(negative(overlap), t);
     }
     for (int i = 0; i < watched_; ++i) {
         const Signal signal = signals_[at(i)];
         const Sensitive value = sensitive(system_, signal, t, y, touching);
-        peak_of(signal.kind).raise(has_modulus(signal.kind) ? modulus(value) : value, t);
+        peak_of(signal).raise(has_modulus(signal) ? modulus(value) : value, t);
     }
 }
 
@@ -144,7 +147,7 @@ void StepObserver::piece(const Piece& piece, const TurningPoints& turns) {
         for (const TurningPoint& turn : turns) {
             Extended y;
             piece.stepper.everything(turn.t, y);
-            const Sensitive overlap = sensitive(system_, {SignalKind::overlap, 0}, turn.t, y, piece.touching);
+            const Sensitive overlap = sensitive(system_, {SignalKind::overlap}, turn.t, y, piece.touching);
             if (turn.maximum) {
                 x_max_.raise(overlap, turn.t);
             } else {
@@ -157,14 +160,14 @@ void StepObserver::piece(const Piece& piece, const TurningPoints& turns) {
     const MotionPoint right = motion_point(system_, piece.right, piece.right_values, piece.touching);
     for (int i = 0; i < watched_; ++i) {
         const Signal signal = signals_[at(i)];
-        watch(signal, peak_of(signal.kind), left_[at(i)], piece, right);
+        watch(signal, peak_of(signal), left_[at(i)], piece, right);
     }
-    if (watches_force) { watch({SignalKind::stop_force, 0}, contact_force_, force_left_, piece, right); }
+    if (watches_force) { watch({SignalKind::stop_force}, contact_force_, force_left_, piece, right); }
 }
 
 void StepObserver::watch(Signal signal, Peak& peak, std::optional<SignalSample>& left, const Piece& piece,
                          const MotionPoint& right_point) {
-    const bool by_modulus = has_modulus(signal.kind);
+    const bool by_modulus = has_modulus(signal);
     if (!left) { left = sample(system_, signal, motion_point(system_, piece.left, piece.left_values, piece.touching)); }
     const SignalSample right = sample(system_, signal, right_point);
     const Wanted wanted{by_modulus ? Wanted::Kind::largest_modulus : Wanted::Kind::maxima, peak.level()};
@@ -184,12 +187,10 @@ void StepObserver::corner(const Crossing& crossing, const Extended& y, bool touc
     const MotionPoint point = motion_point(system_, crossing.t, system_.values(y), touching);
     for (int i = 0; i < watched_; ++i) {
         const Signal signal = signals_[at(i)];
-        if (signal.kind == SignalKind::field) {
-            continue;  // depends on x and t alone: smooth across events
-        }
+        if (signal.kind == SignalKind::peak && system_.rhs().info().peaks[at(signal.peak)].smooth) { continue; }
         const SignalSample here = sample(system_, signal, point);
         const Sensitive value = moving(sensitive(system_, signal, crossing.t, y, touching), here.slope, crossing.shift);
-        peak_of(signal.kind).raise(modulus(value), crossing.t);
+        peak_of(signal).raise(modulus(value), crossing.t);
     }
 }
 
@@ -222,7 +223,7 @@ void StepObserver::open_contact(double t, const Extended& y, bool open) {
     opened_ = {t, {}};
     contact_force_ = {};
     if (open && observes(observe_force)) {
-        contact_force_.raise(sensitive(system_, {SignalKind::stop_force, 0}, t, y, true), t);
+        contact_force_.raise(sensitive(system_, {SignalKind::stop_force}, t, y, true), t);
     }
 }
 
@@ -232,9 +233,7 @@ void StepObserver::close_contact(const Crossing& crossing, const Extended& y, bo
     contact.state_out = system_.state(system_.values(y));
     contact.open_out = open;
     if (!observes(observe_force)) { return; }
-    if (open) {
-        contact_force_.raise(sensitive(system_, {SignalKind::stop_force, 0}, crossing.t, y, true), crossing.t);
-    }
+    if (open) { contact_force_.raise(sensitive(system_, {SignalKind::stop_force}, crossing.t, y, true), crossing.t); }
     contact.peak_force = contact_force_.best.value;
     if (contact_force_.found) {
         if (force_.found) {

@@ -3,7 +3,7 @@
 /// Observables of a run that advances by steps, with gradients. A smooth maximum needs no derivative of the time at
 /// which it is reached (envelope theorem); a value that sits at an event moves with it, on the surface by
 /// dt_e = -(dx - dx_stop)/(dx/dt). Integrals are integrated along with the motion; their jumps at events are applied by
-/// cross_entry() and cross_exit() and divide by nothing.
+/// saltate() and divide by nothing.
 
 #include "flow/augmented_system.hpp"
 #include "flow/flow.hpp"
@@ -51,14 +51,17 @@ public:
     void enter(const Crossing& crossing, const Extended& y, bool with_impact);
     /// The force ends, y just before.
     void leave(const Crossing& crossing, const Extended& y);
-    /// Just after an event that is a corner of the acceleration and of the currents.
+    /// Just after an event that is a corner of the acceleration and of peak signals that are not smooth there.
     void corner(const Crossing& crossing, const Extended& y, bool touching);
 
 private:
-    static constexpr int max_signals = 5;  ///< acceleration, two fields, two currents
+    static constexpr int max_parts = 4;
+    static constexpr int max_signals = 1 + model::max_peaks * max_parts;  ///< acceleration, and all parts
 
     [[nodiscard]] bool observes(std::uint32_t bit) const { return (mask_ & bit) != 0U; }
-    [[nodiscard]] Peak& peak_of(SignalKind kind);
+    [[nodiscard]] Peak& peak_of(const Signal& signal);
+    /// Whether the largest modulus counts rather than the largest value.
+    [[nodiscard]] bool has_modulus(const Signal& signal) const;
     void watch(Signal signal, Peak& peak, std::optional<SignalSample>& left, const Piece& piece,
                const MotionPoint& right);
     void offer_ends(double t, const Extended& y, bool touching);
@@ -74,14 +77,14 @@ private:
     /// Samples at the left end of the next piece, when they are the same as at the right end of the last one.
     std::array<std::optional<SignalSample>, max_signals> left_{};
     std::optional<SignalSample> force_left_;
-    Peak x_max_, x_min_negative_, acceleration_, field_, current_, contact_force_, force_, impact_;
+    Peak x_max_, x_min_negative_, acceleration_, contact_force_, force_, impact_;
+    std::array<Peak, model::max_peaks> peaks_{};
     Crossing opened_;
 };
 
 /// Jumps of the derivative lanes where the mass passes the surface with the velocity x' and the force of a stop that
-/// acts on one side jumps by delta_i x': S = I -+ delta_i e_v e_x^T and its counterparts for the impulse and the stop
-/// work, all times the lanes' own overlap. Entry and exit.
-void cross_entry(const AugmentedSystem& system, Extended& y);
-void cross_exit(const AugmentedSystem& system, Extended& y);
+/// acts on one side jumps by delta_i x': S = I + saltation delta_i e_v e_x^T (-1 entry, +1 exit, 0 nothing) and its
+/// counterparts for the impulse and the stop work, all times the lanes' own overlap.
+void saltate(const AugmentedSystem& system, Extended& y, int saltation);
 
 }  // namespace percuss::flow

@@ -15,6 +15,8 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double shortest_restart = 8.0 * std::numeric_limits<double>::epsilon();
 /// Durations shorter than this change nothing that double precision could tell, and are beyond what SUNDIALS can do.
 constexpr double shortest_duration = 1e-60;
+/// Whether the run is to end early is asked every so many steps; a step takes some ten microseconds.
+constexpr long steps_between_questions = 64;
 
 bool all_finite(const AugmentedSystem& system, const Extended& y) {
     for (int i = 0; i < system.size(); ++i) {
@@ -29,12 +31,11 @@ StepwiseRun::StepwiseRun(const AugmentedSystem& system, Stepper& stepper, const 
     : system_(system),
       stepper_(stepper),
       request_(request),
+      rules_(model::contact_rules(system.rhs().contact_law(), system.damping() != 0.0)),
       result_(result),
       observer_(system, request.observe, result) {}
 
-bool StepwiseRun::hybrid() const {
-    return request_.stop == StopMode::hybrid && system_.rhs().contact_law() != ContactLaw::none;
-}
+bool StepwiseRun::hybrid() const { return request_.stop == StopMode::hybrid && rules_.has_stop; }
 
 void StepwiseRun::run() {
     begin();
@@ -75,10 +76,8 @@ StepwiseRun::Phase StepwiseRun::first_phase() const {
     if (request_.stop == StopMode::held) { return Phase::contact; }
     if (!hybrid()) { return Phase::free; }
     const State values = system_.values(y_);
-    if (request_.starts_in_contact) { return Phase::contact; }
-    if (!(values[0] > 0.0)) { return Phase::free; }
-    const bool pushes = system_.rhs().contact_law() == ContactLaw::kelvin_voigt || system_.stop_force(values) > 0.0;
-    return pushes ? Phase::contact : Phase::slack;
+    if (request_.starts_in_contact) { return rules_.entry().next; }
+    return rules_.first_phase(values[0], system_.stop_force(values));
 }
 
 void StepwiseRun::restart() {
@@ -88,6 +87,10 @@ void StepwiseRun::restart() {
 bool StepwiseRun::advance() {
     if (result_.steps >= request_.max_steps) {
         result_.status = Status::too_many_steps;
+        return false;
+    }
+    if (result_.steps % steps_between_questions == 0 && is_cancelled(request_)) {
+        result_.status = Status::cancelled;
         return false;
     }
     ++result_.steps;
@@ -104,33 +107,25 @@ Piece StepwiseRun::step_as_piece() {
 
 SignalSample StepwiseRun::sample_at(SignalKind kind, double t, const State& values) const {
     return kind == SignalKind::overlap ? overlap_sample(system_, values)
-                                       : sample(system_, {kind, 0}, motion_point(system_, t, values, touching()));
+                                       : sample(system_, {kind}, motion_point(system_, t, values, touching()));
 }
 
 TurningPoints StepwiseRun::turns_of(SignalKind kind, const Piece& piece) const {
-    return turning_points(system_, {kind, 0}, piece, sample_at(kind, piece.left, piece.left_values),
+    return turning_points(system_, {kind}, piece, sample_at(kind, piece.left, piece.left_values),
                           sample_at(kind, piece.right, piece.right_values), Wanted{});
 }
 
 std::optional<StepwiseRun::Event> StepwiseRun::first_event(const Piece& step, const TurningPoints& turns) {
-    const auto event = [](EventKind kind, const std::optional<double>& t) -> std::optional<Event> {
-        return t ? std::optional<Event>{{kind, *t}} : std::nullopt;
-    };
-    const bool pulls = system_.rhs().contact_law() == ContactLaw::kelvin_voigt;
-    if (phase_ == Phase::free) {
-        return event(EventKind::entry, first_crossing(SignalKind::overlap, true, step, turns));
+    std::optional<Event> first;
+    std::optional<TurningPoints> force_turns;
+    for (const model::Transition& row : rules_.from(phase_)) {
+        const bool by_force = row.watched == model::Watched::force;
+        if (by_force && !force_turns) { force_turns = turns_of(SignalKind::stop_force, step); }
+        const auto t = first_crossing(by_force ? SignalKind::stop_force : SignalKind::overlap, row.direction > 0, step,
+                                      by_force ? *force_turns : turns);
+        if (t && (!first || *t < first->t)) { first = Event{&row, *t}; }
     }
-    if (phase_ == Phase::contact && pulls) {
-        return event(EventKind::exit, first_crossing(SignalKind::overlap, false, step, turns));
-    }
-    const TurningPoints force_turns = turns_of(SignalKind::stop_force, step);
-    if (phase_ == Phase::contact) {
-        return event(EventKind::release, first_crossing(SignalKind::stop_force, false, step, force_turns));
-    }
-    const auto departure = event(EventKind::departure, first_crossing(SignalKind::overlap, false, step, turns));
-    const auto reload = event(EventKind::reload, first_crossing(SignalKind::stop_force, true, step, force_turns));
-    const bool departs_first = departure && (!reload || departure->t <= reload->t);
-    return departs_first ? departure : reload;
+    return first;
 }
 
 std::optional<double> StepwiseRun::first_crossing(SignalKind kind, bool upward, const Piece& step,
@@ -176,10 +171,9 @@ void StepwiseRun::observe(Piece piece, TurningPoints turns, const std::optional<
 
 Crossing StepwiseRun::crossing(const Event& event) const {
     Crossing result{event.t, {}};
-    const bool by_force = event.kind == EventKind::release || event.kind == EventKind::reload;
-    const SignalKind kind = by_force ? SignalKind::stop_force : SignalKind::overlap;
+    const SignalKind kind = event.row->watched == model::Watched::force ? SignalKind::stop_force : SignalKind::overlap;
     const double slope = sample_at(kind, event.t, system_.values(y_)).slope;
-    const Sensitive value = sensitive(system_, {kind, 0}, event.t, y_, touching());
+    const Sensitive value = sensitive(system_, {kind}, event.t, y_, touching());
     for (int lane = 0; lane < system_.lanes(); ++lane) {
         const double d = value.d[at(lane)];
         result.shift[at(lane)] = d == 0.0 ? 0.0 : -d / slope;
@@ -194,35 +188,18 @@ void StepwiseRun::cross(const Event& event) {
     }
     t_ = event.t;
     stepper_.everything(t_, y_);
-    const bool on_surface = event.kind != EventKind::release && event.kind != EventKind::reload;
-    if (on_surface) { system_.entry(y_, 0, 0) = 0.0; }
+    const model::Transition& row = *event.row;
+    const bool by_gap = row.watched == model::Watched::gap;
+    if (row.on_surface) { system_.entry(y_, 0, 0) = 0.0; }
     const Crossing place = crossing(event);
     observer_.corner(place, y_, touching());
-    switch (event.kind) {
-        case EventKind::entry:
-            observer_.enter(place, y_, true);
-            cross_entry(system_, y_);
-            phase_ = Phase::contact;
-            break;
-        case EventKind::exit:
-            observer_.leave(place, y_);
-            cross_exit(system_, y_);
-            phase_ = Phase::free;
-            break;
-        case EventKind::release:
-            observer_.leave(place, y_);
-            phase_ = Phase::slack;
-            if (system_.damping() == 0.0) {  // the force ends on the surface
-                system_.entry(y_, 0, 0) = 0.0;
-                phase_ = Phase::free;
-            }
-            break;
-        case EventKind::reload:
-            observer_.enter(place, y_, false);
-            phase_ = Phase::contact;
-            break;
-        case EventKind::departure: phase_ = Phase::free; break;
+    if (row.next == Phase::contact) {
+        observer_.enter(place, y_, by_gap);
+    } else if (touching()) {
+        observer_.leave(place, y_);
     }
+    saltate(system_, y_, row.saltation);
+    phase_ = row.next;
     observer_.corner(place, y_, touching());
     if (std::abs(limit() - t_) <= shortest_restart * std::abs(limit())) {
         result_.status = Status::ok;
@@ -253,7 +230,7 @@ void StepwiseRun::divide() {
     const double duration = request_.duration;
     const double omega = system_.omega();
     const bool no_time = std::abs(duration) < shortest_duration;
-    const Sensitive force = sensitive(system_, {SignalKind::stop_force, 0}, t_, y_, true);
+    const Sensitive force = sensitive(system_, {SignalKind::stop_force}, t_, y_, true);
     const double unit = system_.stiffness() * std::abs(duration) + system_.damping();
     Sensitive& gap = result_.divided_gap;
     Sensitive& share = result_.divided_force;

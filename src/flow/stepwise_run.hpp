@@ -13,6 +13,7 @@
 #include "flow/signals.hpp"
 #include "flow/step_observer.hpp"
 #include "flow/stepper.hpp"
+#include "model/contact_law.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -28,11 +29,9 @@ public:
     void run();
 
 private:
-    /// slack: inside the zone of the stop with no force on it (no-tension law only).
-    enum class Phase : std::uint8_t { free, contact, slack };
-    enum class EventKind : std::uint8_t { entry, exit, release, reload, departure };
+    using Phase = model::ContactPhase;
     struct Event {
-        EventKind kind = EventKind::entry;
+        const model::Transition* row = nullptr;  ///< of the contact law's table
         double t = 0.0;
     };
 
@@ -62,6 +61,7 @@ private:
     const AugmentedSystem& system_;
     Stepper& stepper_;
     const Request& request_;
+    const model::ContactRules& rules_;
     Result& result_;
     StepObserver observer_;
     Phase phase_ = Phase::free;

@@ -45,6 +45,7 @@ public:
         return rhs_->internal_range(p, reach);
     }
     [[nodiscard]] double linear_resonance(const ParameterVector& p) const override { return rhs_->linear_resonance(p); }
+    [[nodiscard]] bool symmetric(const ParameterVector& p) const override { return rhs_->symmetric(p); }
 
 protected:
     [[nodiscard]] virtual std::unique_ptr<Stepper> make_stepper(const AugmentedSystem& system,

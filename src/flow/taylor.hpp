@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// The Taylor integrator with events: expand, choose a step, locate the next event in it, observe, advance, cross.
-/// A template over a model's jet (model/membrane_jet.hpp, model/spring_jet.hpp), which brings the scalar: double, a
-/// Dual with sensitivities as SIMD lanes, or an extended precision.
+/// A template over a model's series (model/series.hpp), which brings the scalar: double, a Dual with sensitivities as
+/// SIMD lanes, or an extended precision.
 ///
 /// Order and step: A. Jorba, M. Zou, "A software package for the numerical integration of ODEs by means of high-order
 /// Taylor methods", Experimental Mathematics 14 (2005): order -ln(tol)/2 + 2, step from the last two coefficients; no
@@ -12,27 +12,28 @@
 
 #include "flow/flow.hpp"
 #include "flow/series_observer.hpp"
+#include "model/contact_law.hpp"
+#include "model/series.hpp"
 #include "numerics/dual.hpp"
 #include "numerics/polynomial_roots.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 namespace percuss::flow {
 inline namespace PERCUSS_ISA {
 
-enum class Law : std::uint8_t { kelvin_voigt, no_tension, none };
-
 /// Unless a request wants full derivatives, the derivative parts of the series stop this many orders before the values:
 /// less than two thirds of the work. Measured on the default orbit, the monodromy matrix is then good to 1e-9 at
 /// tolerance 1e-13 and to a few 1e-5 at 1e-8: enough for Newton's method, not for what is reported.
 inline constexpr int derivative_orders_saved = 4;
+/// Whether the run is to end early is asked every so many steps: a hundred microseconds or so, and no cost that shows.
+inline constexpr long steps_between_questions = 256;
 /// Sensitivities alone may carry this much more relative error per step than the values, before they shorten it.
 inline constexpr double lane_tolerance = 1e-2;
 
-template <class Jet>
+template <model::Series Jet>
 class TaylorRun {
 public:
     using T = typename Jet::Scalar;
@@ -41,9 +42,9 @@ public:
     static constexpr int lanes = numerics::ScalarTraits<T>::lanes;
 
     /// parameters: as the jet's model numbers them.
-    TaylorRun(const T* parameters, Law law, int order)
+    TaylorRun(const T* parameters, model::ContactLaw law, int order)
         : jet_(parameters),
-          law_(law),
+          rules_(model::contact_rules(law, numerics::base(jet_.stop_damping()) != 0)),
           order_(std::min(order, Jet::max_order)),
           derivative_order_(order_),
           safety_(std::exp(-2.0 - 0.7 / (order_ - 1))),
@@ -65,11 +66,14 @@ public:
             jet_.expand(theta_at(), touching(), order_, derivative_order_);
             choose_step();
             locate_event();
-            observer_.step(order_, step_, touching(), event_ != Event::none, finished_);
+            observer_.step(order_, step_, touching(), event_ != nullptr, finished_);
             advance();
-            if (event_ != Event::none) { cross(); }
-            if (event_ == Event::none && finished_ && status_ == Status::not_run) { status_ = Status::ok; }
+            if (event_ != nullptr) { cross(); }
+            if (event_ == nullptr && finished_ && status_ == Status::not_run) { status_ = Status::ok; }
             if (++steps_ >= request.max_steps && status_ == Status::not_run) { status_ = Status::too_many_steps; }
+            if (steps_ % steps_between_questions == 0 && status_ == Status::not_run && is_cancelled(request)) {
+                status_ = Status::cancelled;
+            }
         }
         observer_.end(touching());
         return status_;
@@ -84,9 +88,8 @@ public:
     [[nodiscard]] T theta_at() const { return theta_ + elapsed_; }
 
 private:
-    /// slack: inside the stop's zone with no force on it (no-tension law only).
-    enum class Phase : std::uint8_t { free, contact, slack };
-    enum class Event : std::uint8_t { none, entry, exit, release, reload, leave };
+    using Phase = model::ContactPhase;
+    using Event = model::Transition;
 
     void enter_first_phase() {
         phase_ = Phase::free;
@@ -96,13 +99,13 @@ private:
             case StopMode::held: phase_ = Phase::contact; return;
             case StopMode::hybrid: break;
         }
-        if (law_ == Law::none) { return; }
-        const Base gap = numerics::base(jet_.position()) - numerics::base(jet_.stop_position());
+        if (!rules_.has_stop) { return; }
         if (request_->starts_in_contact) {
-            phase_ = Phase::contact;
-            deflate_ = deflates_on_entry();
-        } else if (gap > 0) {
-            phase_ = law_ == Law::no_tension && force_now() < 0 ? Phase::slack : Phase::contact;
+            phase_ = rules_.entry().next;
+            deflate_ = rules_.entry().deflates;
+        } else {
+            const Base gap = numerics::base(jet_.position()) - numerics::base(jet_.stop_position());
+            phase_ = rules_.first_phase(static_cast<double>(gap), static_cast<double>(force_now()));
         }
     }
 
@@ -110,9 +113,6 @@ private:
         return numerics::base(jet_.stop_stiffness()) *
                    (numerics::base(jet_.position()) - numerics::base(jet_.stop_position())) +
                numerics::base(jet_.stop_damping()) * numerics::base(jet_.velocity());
-    }
-    [[nodiscard]] bool deflates_on_entry() const {
-        return law_ == Law::kelvin_voigt || numerics::base(jet_.stop_damping()) == 0;
     }
 
     /// Jorba and Zou (2005), section 3.2, with one scale for the whole state.
@@ -163,34 +163,22 @@ private:
     /// root isolation, which cannot miss a crossing. A function that is zero at the start of the step is divided by t
     /// first.
     void locate_event() {
-        event_ = Event::none;
-        if (request_->stop != StopMode::hybrid || law_ == Law::none || status_ != Status::not_run) { return; }
-        switch (phase_) {
-            case Phase::free: find(Event::entry, false, +1); break;
-            case Phase::contact:
-                if (law_ == Law::kelvin_voigt) {
-                    find(Event::exit, false, -1);
-                } else {
-                    find(Event::release, true, -1);
-                }
-                break;
-            case Phase::slack:
-                find(Event::leave, false, -1);
-                find(Event::reload, true, +1);
-                break;
-        }
+        event_ = nullptr;
+        if (request_->stop != StopMode::hybrid || !rules_.has_stop || status_ != Status::not_run) { return; }
+        for (const Event& event : rules_.from(phase_)) { find(event); }
     }
 
-    [[nodiscard]] Base event_coefficient(bool force, int j) const {
+    [[nodiscard]] Base event_coefficient(model::Watched watched, int j) const {
         const Base& x = numerics::base(jet_.x()[j]);
         const Base e = j == 0 ? x - numerics::base(jet_.stop_position()) : x;
-        if (!force) { return e; }
+        if (watched == model::Watched::gap) { return e; }
         return numerics::base(jet_.stop_stiffness()) * e +
                numerics::base(jet_.stop_damping()) * numerics::base(jet_.v()[j]);
     }
 
-    /// Looks for the first sign change of the gap (or of the stop force) towards `sign` in (0, step].
-    void find(Event event, bool force, int sign) {
+    /// Looks for the first sign change that makes the event, in (0, step].
+    void find(const Event& event) {
+        const int sign = event.direction;
         const double h = static_cast<double>(step_);
         double c[numerics::max_degree + 1];
         double power = 1.0;
@@ -199,7 +187,7 @@ private:
         const int degree = order_ - shift;
         const double unit = static_cast<double>(sign);
         for (int j = 0; j <= degree; ++j) {
-            c[j] = static_cast<double>(event_coefficient(force, j + shift)) * power;
+            c[j] = static_cast<double>(event_coefficient(event.watched, j + shift)) * power;
             power *= h;
             if (j > 0) { bound += std::max(0.0, unit * c[j]); }
         }
@@ -207,18 +195,20 @@ private:
         if (already && unit * c[1] > 0.0 && !deflate_) { return accept(event, Base(0)); }
         if (unit * c[0] + bound < 0.0) { return; }
         double t = 0.0;
-        if (numerics::first_sign_change(c, degree, sign, t)) { accept(event, refine(force, shift, Base(t) * step_)); }
+        if (numerics::first_sign_change(c, degree, sign, t)) {
+            accept(event, refine(event.watched, shift, Base(t) * step_));
+        }
     }
 
     /// Newton's method in the scalar's own precision (the isolated root is good to double precision).
-    [[nodiscard]] Base refine(bool force, int shift, Base t) const {
+    [[nodiscard]] Base refine(model::Watched watched, int shift, Base t) const {
         if constexpr (sizeof(Base) > sizeof(double)) {
             for (int iteration = 0; iteration < 3; ++iteration) {
                 Base value = 0;
                 Base slope = 0;
                 for (int j = order_; j >= shift; --j) {
                     slope = slope * t + value;
-                    value = value * t + event_coefficient(force, j);
+                    value = value * t + event_coefficient(watched, j);
                 }
                 t = t - value / slope;
             }
@@ -226,9 +216,9 @@ private:
         return t;
     }
 
-    void accept(Event event, const Base& t) {
+    void accept(const Event& event, const Base& t) {
         step_ = t;
-        event_ = event;
+        event_ = &event;
         finished_ = false;
     }
 
@@ -263,42 +253,16 @@ private:
             return;
         }
         const Base theta = numerics::base(theta_) + elapsed_;
-        switch (event_) {
-            case Event::entry:
-                jet_.set_position(numerics::base(jet_.stop_position()));
-                observer_.enter(theta, true);
-                saltate(-1);
-                phase_ = Phase::contact;
-                deflate_ = deflates_on_entry();
-                break;
-            case Event::exit:
-                jet_.set_position(numerics::base(jet_.stop_position()));
-                observer_.exit(theta, true);
-                saltate(+1);
-                phase_ = Phase::free;
-                deflate_ = true;
-                break;
-            case Event::release:
-                if (numerics::base(jet_.stop_damping()) == 0) {
-                    jet_.set_position(numerics::base(jet_.stop_position()));
-                    phase_ = Phase::free;
-                    deflate_ = true;
-                } else {
-                    phase_ = Phase::slack;
-                }
-                observer_.exit(theta, false);
-                break;
-            case Event::reload:
-                observer_.enter(theta, false);
-                phase_ = Phase::contact;
-                break;
-            case Event::leave:
-                jet_.set_position(numerics::base(jet_.stop_position()));
-                phase_ = Phase::free;
-                deflate_ = true;
-                break;
-            case Event::none: break;
+        const bool by_gap = event_->watched == model::Watched::gap;
+        if (event_->on_surface) { jet_.set_position(numerics::base(jet_.stop_position())); }
+        if (event_->next == Phase::contact) {
+            observer_.enter(theta, by_gap);
+        } else if (touching()) {
+            observer_.exit(theta, by_gap);
         }
+        if (event_->saltation != 0) { saltate(event_->saltation); }
+        phase_ = event_->next;
+        deflate_ = event_->deflates;
     }
 
     /// delta v += sign delta_i (delta x - delta x_stop); values stay as they are.
@@ -310,7 +274,7 @@ private:
     }
 
     Jet jet_;
-    Law law_;
+    const model::ContactRules& rules_;
     int order_;
     int derivative_order_;
     double safety_;
@@ -322,7 +286,7 @@ private:
     Base step_{};
     T divided_gap_{};
     Phase phase_ = Phase::free;
-    Event event_ = Event::none;
+    const Event* event_ = nullptr;
     Status status_ = Status::not_run;
     bool deflate_ = false;
     bool finished_ = false;

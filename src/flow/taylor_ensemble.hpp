@@ -2,7 +2,7 @@
 /// \file
 /// The Taylor integrator of flow/taylor.hpp for many starts of one system: as many motions as a vector has lanes
 /// advance together, each with its own phase, step and kind of contact, and a lane whose motion has ended takes the
-/// next start. A template over a model's lanes (model/membrane_lanes.hpp, model/spring_lanes.hpp).
+/// next start. A template over a model's lanes (model/series.hpp).
 ///
 /// Order, step and events follow the same rules as there. No lane ever reads another one and nothing depends on where
 /// a start sits, so its numbers are the same to the last bit in any company.
@@ -16,13 +16,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 namespace percuss::flow {
 inline namespace PERCUSS_ISA {
 
-template <class Jets>
+template <model::LaneSeries Jets>
 class TaylorEnsemble {
 public:
     static constexpr int lanes = Jets::lanes;
@@ -30,39 +29,39 @@ public:
     using Mask = numerics::LaneMask<lanes>;
 
     /// parameters: as the model numbers them.
-    TaylorEnsemble(const double* parameters, Law law, int order)
+    TaylorEnsemble(const double* parameters, model::ContactLaw law, int order)
         : jets_(parameters),
-          law_(law),
+          rules_(model::contact_rules(law, jets_.stop_damping() != 0.0)),
           order_(std::min(order, Jets::max_order)),
           safety_(std::exp(-2.0 - 0.7 / (order_ - 1))) {}
 
     void run(const EnsembleRequest& request, std::span<EnsembleMember> members) {
         request_ = &request;
         members_ = members;
-        seeks_events_ = request.stop == StopMode::hybrid && law_ != Law::none;
+        seeks_events_ = request.stop == StopMode::hybrid && rules_.has_stop;
         for (std::size_t i = 0; i < width; ++i) { take_next(i); }
-        while (busy_ > 0) {
+        for (long sweeps = 1; busy_ > 0; ++sweeps) {
             jets_.expand(elapsed_ + request.theta, stiffness_, damping_, order_);
             choose_steps();
             locate_events();
             jets_.advance(step_, order_);
             elapsed_ += step_;
             for (std::size_t i = 0; i < width; ++i) { settle(i); }
+            if (sweeps % steps_between_questions == 0 && is_cancelled(request)) { conclude_all(Status::cancelled); }
         }
     }
 
 private:
     static constexpr auto width = static_cast<std::size_t>(lanes);
 
-    /// slack: inside the stop's zone with no force on it (no-tension law only).
-    enum class Phase : std::uint8_t { free, contact, slack };
-    enum class Event : std::uint8_t { none, entry, exit, release, reload, leave };
+    using Phase = model::ContactPhase;
+    using Event = model::Transition;
 
     /// What a lane is busy with.
     struct Lane {
         EnsembleMember* member = nullptr;  ///< null: nothing
         Phase phase = Phase::free;
-        Event event = Event::none;
+        const Event* event = nullptr;
         bool deflate = false;
         bool finished = false;
         int events = 0;
@@ -93,9 +92,8 @@ private:
     [[nodiscard]] Phase first_phase(const State& start) const {
         if (request_->stop == StopMode::held) { return Phase::contact; }
         const double gap = start[0] - jets_.stop_position();
-        if (!seeks_events_ || !(gap > 0.0)) { return Phase::free; }
-        const double force = jets_.stop_stiffness() * gap + jets_.stop_damping() * start[1];
-        return law_ == Law::no_tension && force < 0.0 ? Phase::slack : Phase::contact;
+        if (!seeks_events_) { return Phase::free; }
+        return rules_.first_phase(gap, jets_.stop_stiffness() * gap + jets_.stop_damping() * start[1]);
     }
 
     /// Makes the vectors that depend on phase and deflation agree with them.
@@ -104,8 +102,8 @@ private:
         const bool touching = lane.phase == Phase::contact;
         stiffness_.set(i, touching ? jets_.stop_stiffness() : 0.0);
         damping_.set(i, touching ? jets_.stop_damping() : 0.0);
-        gap_sign_.set(i, lane.phase == Phase::free ? 1.0 : -1.0);
-        force_sign_.set(i, lane.phase == Phase::slack ? 1.0 : -1.0);
+        gap_sign_.set(i, rules_.direction(lane.phase, model::Watched::gap));
+        force_sign_.set(i, rules_.direction(lane.phase, model::Watched::force));
         deflate_.set(i, lane.deflate);
     }
 
@@ -136,7 +134,7 @@ private:
     void locate_events() {
         if (!seeks_events_) { return; }
         Mask possible = may_change_sign(gap_sign_, false);
-        if (law_ == Law::no_tension) { possible = possible | may_change_sign(force_sign_, true); }
+        if (rules_.releases_on_force) { possible = possible | may_change_sign(force_sign_, true); }
         if (!possible.any()) { return; }
         for (std::size_t i = 0; i < width; ++i) {
             if (possible[i] && lane_[i].member != nullptr && lane_[i].member->status == Status::not_run) { locate(i); }
@@ -165,25 +163,14 @@ private:
     }
 
     void locate(std::size_t i) {
-        switch (lane_[i].phase) {
-            case Phase::free: find(i, Event::entry, false, +1); break;
-            case Phase::contact:
-                if (law_ == Law::kelvin_voigt) {
-                    find(i, Event::exit, false, -1);
-                } else {
-                    find(i, Event::release, true, -1);
-                }
-                break;
-            case Phase::slack:
-                find(i, Event::leave, false, -1);
-                find(i, Event::reload, true, +1);
-                break;
-        }
+        for (const Event& event : rules_.from(lane_[i].phase)) { find(i, event); }
     }
 
-    /// Looks for the first sign change of the gap (or of the stop's force) towards `sign` in (0, step]. A function that
-    /// is zero at the start of the step is divided by t first.
-    __attribute__((noinline)) void find(std::size_t i, Event event, bool force, int sign) {
+    /// Looks for the first sign change that makes the event, in (0, step]. A function that is zero at the start of the
+    /// step is divided by t first.
+    __attribute__((noinline)) void find(std::size_t i, const Event& event) {
+        const bool force = event.watched == model::Watched::force;
+        const int sign = event.direction;
         const Lane& lane = lane_[i];
         const double h = step_[i];
         double c[numerics::max_degree + 1];
@@ -209,9 +196,9 @@ private:
         return force ? jets_.stop_stiffness() * e + jets_.stop_damping() * jets_.v(j)[i] : e;
     }
 
-    void accept(std::size_t i, Event event, double t) {
+    void accept(std::size_t i, const Event& event, double t) {
         step_.set(i, t);
-        lane_[i].event = event;
+        lane_[i].event = &event;
         lane_[i].finished = false;
     }
 
@@ -222,17 +209,17 @@ private:
         EnsembleMember& member = *lane.member;
         if (member.status == Status::not_run) {
             ++lane.steps;
-            if (lane.event == Event::none && !lane.deflate && !lane.finished && lane.steps < request_->max_steps) {
+            if (lane.event == nullptr && !lane.deflate && !lane.finished && lane.steps < request_->max_steps) {
                 return;
             }
             lane.deflate = false;
             Status status = Status::not_run;
-            if (lane.event != Event::none) {
+            if (lane.event != nullptr) {
                 if (!cross(i)) { status = Status::too_many_events; }
             } else if (lane.finished) {
                 status = Status::ok;
             }
-            lane.event = Event::none;
+            lane.event = nullptr;
             show_phase(i);
             if (status == Status::not_run && lane.steps >= request_->max_steps) { status = Status::too_many_steps; }
             if (status != Status::not_run) { conclude(i, status); }
@@ -244,32 +231,12 @@ private:
     bool cross(std::size_t i) {
         Lane& lane = lane_[i];
         if (++lane.events > request_->max_events) { return false; }
-        const bool undamped = jets_.stop_damping() == 0.0;
-        switch (lane.event) {
-            case Event::entry:
-                jets_.set_position(i, jets_.stop_position());
-                lane.phase = Phase::contact;
-                lane.deflate = law_ == Law::kelvin_voigt || undamped;
-                ++lane.member->contacts;
-                break;
-            case Event::release:
-                lane.phase = Phase::slack;
-                if (undamped) { become_free(i); }
-                break;
-            case Event::reload:
-                lane.phase = Phase::contact;
-                ++lane.member->contacts;
-                break;
-            case Event::exit:
-            case Event::leave: become_free(i); break;
-            case Event::none: break;
-        }
+        const Event& event = *lane.event;
+        if (event.on_surface) { jets_.set_position(i, jets_.stop_position()); }
+        if (event.next == Phase::contact) { ++lane.member->contacts; }
+        lane.phase = event.next;
+        lane.deflate = event.deflates;
         return true;
-    }
-    void become_free(std::size_t i) {
-        jets_.set_position(i, jets_.stop_position());
-        lane_[i].phase = Phase::free;
-        lane_[i].deflate = true;
     }
 
     /// The motion of a lane ends here.
@@ -280,9 +247,20 @@ private:
         member.status = status;
         --busy_;
     }
+    /// So do all of them, and no other start is taken; those never taken get the status too.
+    void conclude_all(Status status) {
+        for (std::size_t i = 0; i < width; ++i) {
+            if (lane_[i].member != nullptr) { conclude(i, status); }
+            lane_[i].member = nullptr;
+        }
+        for (; next_ < request_->states.size(); ++next_) {
+            members_[next_] = EnsembleMember{};
+            members_[next_].status = status;
+        }
+    }
 
     Jets jets_;
-    Law law_;
+    const model::ContactRules& rules_;
     int order_;
     double safety_;
     const EnsembleRequest* request_ = nullptr;

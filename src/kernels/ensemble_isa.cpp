@@ -2,9 +2,8 @@
 // namespaces of that name.
 
 #include "flow/taylor_ensemble.hpp"
-#include "kernels/ensemble_table.hpp"
-#include "model/membrane_lanes.hpp"
-#include "model/spring_lanes.hpp"
+#include "kernels/scene_table.hpp"
+#include "model/scenes.hpp"
 
 namespace percuss::kernels {
 namespace {
@@ -15,15 +14,15 @@ constexpr int max_order = 24;
 template <class Jets>
 void kernel(const flow::ParameterVector& parameters, const TaylorSettings& settings,
             const flow::EnsembleRequest& request, std::span<flow::EnsembleMember> members) {
-    flow::TaylorEnsemble<Jets> ensemble(parameters.data(), static_cast<flow::Law>(settings.law), settings.order);
+    flow::TaylorEnsemble<Jets> ensemble(parameters.data(), settings.law, settings.order);
     ensemble.run(request, members);
 }
 
-constexpr EnsembleTable table = {
-    kernel<model::MembraneLanes<lanes, true, max_order>>,
-    kernel<model::MembraneLanes<lanes, false, max_order>>,
-    kernel<model::SpringLanes<lanes, max_order>>,
-};
+template <class... S>
+constexpr EnsembleTable table_of(model::SceneList<S...>) {
+    return {kernel<typename S::template Lanes<lanes, max_order>>...};
+}
+constexpr EnsembleTable table = table_of(model::Scenes{});
 
 }  // namespace
 

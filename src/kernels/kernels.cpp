@@ -2,9 +2,8 @@
 
 #include "flow/sundials.hpp"
 #include "flow/taylor_order.hpp"
-#include "kernels/ensemble_table.hpp"
 #include "kernels/plain_systems.hpp"
-#include "kernels/taylor_table.hpp"
+#include "kernels/scene_table.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -60,18 +59,15 @@ const Set& choose_set(std::string_view requested) {
 
 class TaylorIntegrator final : public flow::Integrator {
 public:
-    TaylorIntegrator(model::ActuatorKind kind, model::StopLaw law, bool viscous, const IntegratorOptions& options)
-        : plain_(make_plain_system(kind, law, viscous)),
+    TaylorIntegrator(const model::Scene& scene, model::ContactLaw law, const IntegratorOptions& options)
+        : plain_(make_plain_system(scene, law)),
           info_(plain_->info()),
           tolerance_(options.tolerance) {
-        Scene scene = Scene::spring_mass;
-        if (kind == model::ActuatorKind::dielectric_elastomer) {
-            scene = viscous ? Scene::membranes : Scene::elastic_membranes;
-        }
         const Set& set = choose_set(options.instruction_set);
-        kernels_ = &(*set.single)[static_cast<std::size_t>(scene)];
-        ensemble_ = (*set.ensemble)[static_cast<std::size_t>(scene)];
-        settings_.law = static_cast<std::uint8_t>(law);
+        const std::size_t index = scene_index(scene);
+        kernels_ = &(*set.single)[index];
+        ensemble_ = (*set.ensemble)[index];
+        settings_.law = law;
         settings_.order = flow::taylor_order(options.tolerance);
     }
 
@@ -111,6 +107,7 @@ public:
     [[nodiscard]] double linear_resonance(const flow::ParameterVector& p) const override {
         return plain_->linear_resonance(p);
     }
+    [[nodiscard]] bool symmetric(const flow::ParameterVector& p) const override { return plain_->symmetric(p); }
 
 private:
     std::shared_ptr<const flow::RightHandSide> plain_;
@@ -134,19 +131,15 @@ std::span<const std::string_view> instruction_sets() {
     return names;
 }
 
-std::unique_ptr<flow::Integrator> make_integrator(model::ActuatorKind kind, model::StopLaw law, bool viscous,
+std::unique_ptr<flow::Integrator> make_integrator(const model::Scene& scene, model::ContactLaw law,
                                                   const IntegratorOptions& options) {
     if (!(options.tolerance >= 1e-16 && options.tolerance <= 1e-2)) {
         throw std::invalid_argument("solver.tolerance = " + std::to_string(options.tolerance) +
                                     ": allowed is 1e-16 to 1e-2");
     }
-    if (options.integrator == "taylor") { return std::make_unique<TaylorIntegrator>(kind, law, viscous, options); }
-    if (options.integrator == "erk") {
-        return flow::make_erk(make_plain_system(kind, law, viscous), options.tolerance);
-    }
-    if (options.integrator == "cvode") {
-        return flow::make_cvode(make_plain_system(kind, law, viscous), options.tolerance);
-    }
+    if (options.integrator == "taylor") { return std::make_unique<TaylorIntegrator>(scene, law, options); }
+    if (options.integrator == "erk") { return flow::make_erk(make_plain_system(scene, law), options.tolerance); }
+    if (options.integrator == "cvode") { return flow::make_cvode(make_plain_system(scene, law), options.tolerance); }
     throw std::invalid_argument("solver.integrator = " + options.integrator + ": allowed are taylor, erk, cvode");
 }
 

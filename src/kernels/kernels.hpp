@@ -3,7 +3,8 @@
 /// Where models meet integrators: one factory that picks the specialised kernel for a scene once and for all.
 
 #include "flow/flow.hpp"
-#include "model/parameters.hpp"
+#include "model/contact_law.hpp"
+#include "model/scene.hpp"
 
 #include <memory>
 #include <span>
@@ -18,10 +19,9 @@ struct IntegratorOptions {
     std::string instruction_set = "auto";  ///< auto | v2 | v3 | v4 | generic (x86-64 levels)
 };
 
-/// Scene: actuator type, stop law, and whether the Maxwell branches are there at all (mu_ratio above zero); without
-/// them the Taylor integrator drops the viscous states. Throws std::invalid_argument for an unknown integrator, an
-/// instruction set that this build or processor does not have, or a tolerance outside [1e-16, 1e-2].
-std::unique_ptr<flow::Integrator> make_integrator(model::ActuatorKind kind, model::StopLaw law, bool viscous,
+/// Throws std::invalid_argument for an unknown integrator, an instruction set that this build or processor does not
+/// have, a tolerance outside [1e-16, 1e-2], or a scene that is not in model::Scenes.
+std::unique_ptr<flow::Integrator> make_integrator(const model::Scene& scene, model::ContactLaw law,
                                                   const IntegratorOptions& options = {});
 
 /// The set that `requested` ("auto" or a name) resolves to on this processor. Throws std::invalid_argument.

@@ -1,13 +1,14 @@
 #include "kernels/plain_systems.hpp"
 
-#include "model/plain_powers.hpp"
-#include "model/plain_rhs.hpp"
+#include "kernels/scene_table.hpp"
+#include "model/plain.hpp"
 #include "numerics/forward_lanes.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 
 namespace percuss::kernels {
 namespace {
@@ -20,170 +21,23 @@ using numerics::ForwardLanes;
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Half peak to peak raised to the square and averaged over a cycle: mean of (1 - cos)^2/4 is 3/8.
-constexpr double mean_square_of_drive = 3.0 / 8.0;
-
-struct Membranes {
-    static constexpr int states = model::membrane::states;
-    static constexpr int parameters = model::membrane::count;
-    static constexpr int sides = 2;
-
-    static flow::SystemInfo info() {
-        flow::SystemInfo info;
-        info.states = states;
-        info.parameters = parameters;
-        info.omega = model::membrane::omega;
-        info.gap = model::membrane::gap;
-        info.stiffness = model::membrane::stiffness;
-        info.damping = model::membrane::damping;
-        std::copy(model::membrane::names.begin(), model::membrane::names.end(), info.names.begin());
-        info.mirror = {0, 1, 3, 2};
-        info.observes_membranes = true;
-        return info;
-    }
-    template <class T>
-    static void rate(const T* p, const T& theta, const T* state, bool touching, T* out) {
-        model::membrane_rhs(p, theta, state, touching, out);
-    }
-    template <class T>
-    static void powers(const T* p, const T& theta, const T* state, T& drive, T& loss) {
-        model::membrane_powers(p, theta, state, drive, loss);
-    }
-    template <class T>
-    static T signal(flow::PeakSignal which, int side, const T* p, const T& theta, const T* state) {
-        return which == flow::PeakSignal::field ? model::membrane_field(p, theta, state, side)
-                                                : model::membrane_current(p, theta, state, side);
-    }
-    /// The stretches stay positive while the membranes are whole; a stroke of 1000 frame widths is no motion.
-    static bool meaningful(const State& y) {
-        return std::abs(y[0]) < 1e3 && std::abs(y[1]) < 1e6 && y[2] > 0.0 && y[2] < 1e3 && y[3] > 0.0 && y[3] < 1e3;
-    }
-    static double centre(const ParameterVector& p) { return 0.5 * p[model::membrane::length]; }
-    static State rest_state(const ParameterVector& p) {
-        const double l = p[model::membrane::length];
-        const double stretch = p[model::membrane::lambda_p] * std::sqrt(1.0 + 0.25 * l * l);
-        return {0.5 * l, 0.0, stretch, stretch};
-    }
-    /// The stretch xi relaxes towards lambda_1 = lambda_p sqrt(1 + u^2) of its membrane, u = x or x - l.
-    static flow::StateRange internal_range(const ParameterVector& p, double reach) {
-        const double furthest = 0.5 * p[model::membrane::length] + reach;
-        const double lower = p[model::membrane::lambda_p];
-        const double upper = lower * std::sqrt(1.0 + furthest * furthest);
-        return {{0.0, 0.0, lower, lower}, {0.0, 0.0, upper, upper}};
-    }
-    /// Stiffness of both membranes about rest for a given phi^2, dashpots of the Maxwell branches locked.
-    static double stiffness(const ParameterVector& values, double phi_squared) {
-        using T = ForwardLanes<1>;
-        std::array<T, parameters> p;
-        std::transform(values.begin(), values.begin() + parameters, p.begin(), [](double v) { return T(v); });
-        const State rest = rest_state(values);
-        const T phi(std::sqrt(phi_squared));
-        double sum = 0.0;
-        for (const double u : {rest[0], -rest[0]}) {
-            T displacement(u);
-            displacement.d[0] = 1.0;
-            sum += model::membrane_force(p.data(), displacement, T(0.0), T(rest[2]), phi).d[0];
-        }
-        return sum * values[model::membrane::layers];
-    }
-    /// Above the voltage that makes the rest position unstable: the undriven frequency.
-    static double linear_resonance(const ParameterVector& p) {
-        const double voltage = p[model::membrane::voltage];
-        const double driven = stiffness(p, mean_square_of_drive * voltage * voltage);
-        return std::sqrt(driven > 0.0 ? driven : stiffness(p, 0.0));
-    }
-};
-
-/// Without the Maxwell branches (mu_ratio = 0, which switches their force off): x and x' are all there is.
-struct ElasticMembranes : Membranes {
-    static constexpr int states = 2;
-
-    static flow::SystemInfo info() {
-        flow::SystemInfo info = Membranes::info();
-        info.states = states;
-        info.mirror = {0, 1, 0, 0};
-        return info;
-    }
-    /// The idle stretches are given the value one, which keeps every power finite.
-    template <class T>
-    static std::array<T, Membranes::states> filled(const T* state) {
-        return {state[0], state[1], T(1.0), T(1.0)};
-    }
-    template <class T>
-    static void rate(const T* p, const T& theta, const T* state, bool touching, T* out) {
-        std::array<T, Membranes::states> full;
-        Membranes::rate(p, theta, filled(state).data(), touching, full.data());
-        std::copy_n(full.begin(), states, out);
-    }
-    template <class T>
-    static void powers(const T* p, const T& theta, const T* state, T& drive, T& loss) {
-        Membranes::powers(p, theta, filled(state).data(), drive, loss);
-    }
-    static bool meaningful(const State& y) { return Membranes::meaningful(filled(y.data())); }
-    static State rest_state(const ParameterVector& p) { return {Membranes::centre(p), 0.0, 0.0, 0.0}; }
-    static flow::StateRange internal_range(const ParameterVector&, double) { return {}; }
-};
-
-struct Spring {
-    static constexpr int states = model::spring::states;
-    static constexpr int parameters = model::spring::count;
-    static constexpr int sides = 0;
-
-    static flow::SystemInfo info() {
-        flow::SystemInfo info;
-        info.states = states;
-        info.parameters = parameters;
-        info.omega = model::spring::omega;
-        info.gap = model::spring::gap;
-        info.stiffness = model::spring::stop_stiffness;
-        info.damping = model::spring::stop_damping;
-        std::copy(model::spring::names.begin(), model::spring::names.end(), info.names.begin());
-        info.mirror = {0, 1, 0, 0};
-        return info;
-    }
-    template <class T>
-    static void rate(const T* p, const T& theta, const T* state, bool touching, T* out) {
-        model::spring_rhs(p, theta, state, touching, out);
-    }
-    template <class T>
-    static void powers(const T* p, const T& theta, const T* state, T& drive, T& loss) {
-        model::spring_powers(p, theta, state, drive, loss);
-    }
-    template <class T>
-    static T signal(flow::PeakSignal, int, const T*, const T&, const T*) {
-        return T(0.0);
-    }
-    static bool meaningful(const State& y) { return std::abs(y[0]) < 1e12 && std::abs(y[1]) < 1e12; }
-    static double centre(const ParameterVector&) { return 0.0; }
-    static State rest_state(const ParameterVector&) { return {}; }
-    static flow::StateRange internal_range(const ParameterVector&, double) { return {}; }
-    /// sqrt(k1); for a double well the frequency in a well, for a purely cubic spring the one (describing function,
-    /// 3/4 k3 A^2) at the static amplitude A = (F/k3)^(1/3); 1 when nothing restores the mass.
-    static double linear_resonance(const ParameterVector& p) {
-        const double k1 = p[model::spring::stiffness];
-        const double k3 = p[model::spring::cubic];
-        if (k1 > 0.0) { return std::sqrt(k1); }
-        if (!(k3 > 0.0)) { return 1.0; }
-        const double amplitude = std::cbrt(std::abs(p[model::spring::force]) / k3);
-        const double squared = k1 < 0.0 ? -2.0 * k1 : 0.75 * k3 * amplitude * amplitude;
-        return squared > 0.0 ? std::sqrt(squared) : 1.0;
-    }
-};
+template <model::PlainModel Model>
+constexpr int count_of = static_cast<int>(Model::scene.parameters.size());
 
 /// A point of the motion whose every number carries N derivatives, one per direction.
-template <class Model, int N>
+template <model::PlainModel Model, int N>
 struct Lifted {
     using T = ForwardLanes<N>;
-    std::array<T, Model::parameters> p;
-    std::array<T, Model::states> state;
+    std::array<T, at(count_of<Model>)> p;
+    std::array<T, at(Model::scene.states)> state;
     T theta;
 
     Lifted(const ParameterVector& parameters, double phase, const State& y, std::span<const Direction> directions) {
-        for (int i = 0; i < Model::parameters; ++i) {
+        for (int i = 0; i < count_of<Model>; ++i) {
             p[at(i)] = T(parameters[at(i)]);
             for (std::size_t j = 0; j < directions.size(); ++j) { p[at(i)].d[j] = directions[j].parameter[at(i)]; }
         }
-        for (int i = 0; i < Model::states; ++i) {
+        for (int i = 0; i < Model::scene.states; ++i) {
             state[at(i)] = T(y[at(i)]);
             for (std::size_t j = 0; j < directions.size(); ++j) { state[at(i)].d[j] = directions[j].state[at(i)]; }
         }
@@ -192,17 +46,31 @@ struct Lifted {
     }
 };
 
-template <class Model>
+flow::SystemInfo info_of(const model::Scene& scene, model::ContactLaw law) {
+    flow::SystemInfo info;
+    info.states = scene.states;
+    info.parameters = static_cast<int>(scene.parameters.size());
+    info.omega = scene.roles.omega;
+    info.gap = scene.roles.gap;
+    info.stiffness = scene.roles.stop_stiffness;
+    info.damping = scene.roles.stop_damping;
+    info.drive = scene.roles.drive;
+    std::copy(scene.parameters.begin(), scene.parameters.end(), info.names.begin());
+    info.mirror = scene.mirror;
+    info.peaks = scene.peaks;
+    info.means = static_cast<int>(scene.means.size());
+    info.releases_on_force = model::contact_rules(law).releases_on_force;
+    info.has_stop = model::has_stop(law);
+    return info;
+}
+
+template <model::PlainModel Model>
 class PlainSystem final : public flow::RightHandSide {
 public:
-    explicit PlainSystem(flow::ContactLaw law) : info_(Model::info()), law_(law) {
-        info_.releases_on_force = law == flow::ContactLaw::no_tension;
-        info_.has_stop = law != flow::ContactLaw::none;
-    }
+    explicit PlainSystem(model::ContactLaw law) : info_(info_of(Model::scene, law)), law_(law) {}
 
     [[nodiscard]] const flow::SystemInfo& info() const override { return info_; }
-    [[nodiscard]] flow::ContactLaw contact_law() const override { return law_; }
-    [[nodiscard]] int sides() const override { return Model::sides; }
+    [[nodiscard]] model::ContactLaw contact_law() const override { return law_; }
     [[nodiscard]] bool meaningful(const State& state) const override { return Model::meaningful(state); }
     [[nodiscard]] State rest_state(const ParameterVector& p) const override { return Model::rest_state(p); }
     [[nodiscard]] flow::StateRange internal_range(const ParameterVector& p, double reach) const override {
@@ -211,6 +79,7 @@ public:
     [[nodiscard]] double linear_resonance(const ParameterVector& p) const override {
         return Model::linear_resonance(p);
     }
+    [[nodiscard]] bool symmetric(const ParameterVector& p) const override { return Model::symmetric(p); }
     [[nodiscard]] double centre(const ParameterVector& p) const override { return Model::centre(p); }
     /// The centre is linear in the parameters.
     [[nodiscard]] double centre_derivative(const ParameterVector&, const ParameterVector& dp) const override {
@@ -225,9 +94,9 @@ public:
         }
         with_lanes(directions.size(), [&]<int N>() {
             const Lifted<Model, N> point(p, theta, state, directions);
-            std::array<ForwardLanes<N>, Model::states> out;
+            std::array<ForwardLanes<N>, at(Model::scene.states)> out;
             Model::rate(point.p.data(), point.theta, point.state.data(), touching, out.data());
-            for (int i = 0; i < Model::states; ++i) {
+            for (int i = 0; i < Model::scene.states; ++i) {
                 rate[at(i)] = out[at(i)].value;
                 for (std::size_t j = 0; j < directions.size(); ++j) { rate_d[j][at(i)] = out[at(i)].d[j]; }
             }
@@ -250,19 +119,39 @@ public:
         });
     }
 
-    [[nodiscard]] double signal(flow::PeakSignal which, int side, const ParameterVector& p, double theta,
-                                const State& state, std::span<const Direction> directions,
-                                double* value_d) const override {
-        if (directions.empty()) { return Model::template signal<double>(which, side, p.data(), theta, state.data()); }
+    [[nodiscard]] double peak(int signal, int part, const ParameterVector& p, double theta, const State& state,
+                              std::span<const Direction> directions, double* value_d) const override {
         double value = 0.0;
-        with_lanes(directions.size(), [&]<int N>() {
-            const Lifted<Model, N> point(p, theta, state, directions);
-            const ForwardLanes<N> out =
-                Model::template signal<ForwardLanes<N>>(which, side, point.p.data(), point.theta, point.state.data());
-            value = out.value;
-            for (std::size_t j = 0; j < directions.size(); ++j) { value_d[j] = out.d[j]; }
-        });
+        if constexpr (!Model::scene.peaks.empty()) {
+            if (directions.empty()) { return Model::peak(signal, part, p.data(), theta, state.data()); }
+            with_lanes(directions.size(), [&]<int N>() {
+                const Lifted<Model, N> point(p, theta, state, directions);
+                const ForwardLanes<N> out = Model::peak(signal, part, point.p.data(), point.theta, point.state.data());
+                value = out.value;
+                for (std::size_t j = 0; j < directions.size(); ++j) { value_d[j] = out.d[j]; }
+            });
+        }
         return value;
+    }
+
+    void means(const ParameterVector& p, double theta, const State& state, std::span<const Direction> directions,
+               flow::Means& value, flow::Means* value_d) const override {
+        value = {};
+        if constexpr (!Model::scene.means.empty()) {
+            for (std::size_t k = 0; k < Model::scene.means.size(); ++k) {
+                const int which = static_cast<int>(k);
+                if (directions.empty()) {
+                    value[k] = Model::mean(which, p.data(), theta, state.data());
+                    continue;
+                }
+                with_lanes(directions.size(), [&]<int N>() {
+                    const Lifted<Model, N> point(p, theta, state, directions);
+                    const ForwardLanes<N> out = Model::mean(which, point.p.data(), point.theta, point.state.data());
+                    value[k] = out.value;
+                    for (std::size_t j = 0; j < directions.size(); ++j) { value_d[j][k] = out.d[j]; }
+                });
+            }
+        }
     }
 
 private:
@@ -279,25 +168,35 @@ private:
     }
 
     flow::SystemInfo info_;
-    flow::ContactLaw law_;
+    model::ContactLaw law_;
 };
 
-flow::ContactLaw contact_law(model::StopLaw law) {
-    switch (law) {
-        case model::StopLaw::kelvin_voigt: return flow::ContactLaw::kelvin_voigt;
-        case model::StopLaw::no_tension: return flow::ContactLaw::no_tension;
-        case model::StopLaw::none: break;
+template <class... S>
+std::shared_ptr<const flow::RightHandSide> make(model::SceneList<S...>, std::size_t index, model::ContactLaw law) {
+    using Maker = std::shared_ptr<const flow::RightHandSide> (*)(model::ContactLaw);
+    constexpr std::array<Maker, sizeof...(S)> makers = {
+        [](model::ContactLaw l) -> std::shared_ptr<const flow::RightHandSide> {
+            return std::make_shared<PlainSystem<typename S::Plain>>(l);
+        }...};
+    return makers.at(index)(law);
+}
+
+template <class... S>
+std::size_t index_in(model::SceneList<S...>, const model::Scene& scene) {
+    const std::array<const model::Scene*, sizeof...(S)> listed = {&S::Plain::scene...};
+    const auto found = std::find(listed.begin(), listed.end(), &scene);
+    if (found == listed.end()) {
+        throw std::invalid_argument("scene '" + std::string(scene.name) + "': no kernels are compiled for it");
     }
-    return flow::ContactLaw::none;
+    return static_cast<std::size_t>(found - listed.begin());
 }
 
 }  // namespace
 
-std::shared_ptr<const flow::RightHandSide> make_plain_system(model::ActuatorKind kind, model::StopLaw law,
-                                                             bool viscous) {
-    if (kind == model::ActuatorKind::spring_mass) { return std::make_shared<PlainSystem<Spring>>(contact_law(law)); }
-    if (viscous) { return std::make_shared<PlainSystem<Membranes>>(contact_law(law)); }
-    return std::make_shared<PlainSystem<ElasticMembranes>>(contact_law(law));
+std::size_t scene_index(const model::Scene& scene) { return index_in(model::Scenes{}, scene); }
+
+std::shared_ptr<const flow::RightHandSide> make_plain_system(const model::Scene& scene, model::ContactLaw law) {
+    return make(model::Scenes{}, scene_index(scene), law);
 }
 
 }  // namespace percuss::kernels

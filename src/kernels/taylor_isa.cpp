@@ -2,9 +2,8 @@
 // namespaces of that name.
 
 #include "flow/taylor.hpp"
-#include "kernels/taylor_table.hpp"
-#include "model/membrane_jet.hpp"
-#include "model/spring_jet.hpp"
+#include "kernels/scene_table.hpp"
+#include "model/scenes.hpp"
 
 namespace percuss::kernels {
 namespace {
@@ -77,8 +76,16 @@ void report_observables(const flow::SeriesObserver<Jet>& observer, std::uint32_t
     if ((mask & flow::observe_acceleration) != 0U) {
         out.peak_acceleration = sensitive(observer.peak_acceleration().value);
     }
-    if ((mask & flow::observe_field) != 0U) { out.peak_field = sensitive(observer.peak_field()); }
-    if ((mask & flow::observe_current) != 0U) { out.peak_current = sensitive(observer.peak_current().value); }
+    for (int k = 0; k < Jet::peaks; ++k) {
+        if ((mask & flow::observe_peak(k)) != 0U) {
+            out.peak[static_cast<std::size_t>(k)] = sensitive(observer.peak(k));
+        }
+    }
+    for (int k = 0; k < Jet::means; ++k) {
+        if ((mask & flow::observe_mean(k)) != 0U) {
+            out.mean[static_cast<std::size_t>(k)] = sensitive(observer.mean(k));
+        }
+    }
     if ((mask & flow::observe_energy) != 0U) {
         out.drive_work = sensitive(observer.drive_work());
         out.dissipation = sensitive(observer.dissipation());
@@ -101,7 +108,7 @@ void kernel(const flow::ParameterVector& parameters, const TaylorSettings& setti
         seed(theta, i, direction.phase);
     }
 
-    flow::TaylorRun<Jet> run(p, static_cast<flow::Law>(settings.law), settings.order);
+    flow::TaylorRun<Jet> run(p, settings.law, settings.order);
     flow::reset(result);
     result.status = run.run(y, theta, request.duration, request);
     result.steps = run.steps();
@@ -129,20 +136,19 @@ void kernel(const flow::ParameterVector& parameters, const TaylorSettings& setti
     report_observables<Jet>(run.observer(), request.observe, result.observables);
 }
 
-template <class T>
-using Membranes = model::MembraneJet<T, true, max_order>;
-template <class T>
-using Elastic = model::MembraneJet<T, false, max_order>;
-template <class T>
-using Spring = model::SpringJet<T, max_order>;
 using Dual4 = numerics::Dual<4>;
 using Dual8 = numerics::Dual<8>;
 
-constexpr TaylorTable table = {{
-    {kernel<Membranes<double>>, kernel<Membranes<Dual4>>, kernel<Membranes<Dual8>>},
-    {kernel<Elastic<double>>, kernel<Elastic<Dual4>>, kernel<Elastic<Dual8>>},
-    {kernel<Spring<double>>, kernel<Spring<Dual4>>, kernel<Spring<Dual8>>},
-}};
+template <class S>
+constexpr std::array<TaylorKernel, lane_classes.size()> kernels_of() {
+    return {kernel<typename S::template Jet<double, max_order>>, kernel<typename S::template Jet<Dual4, max_order>>,
+            kernel<typename S::template Jet<Dual8, max_order>>};
+}
+template <class... S>
+constexpr TaylorTable table_of(model::SceneList<S...>) {
+    return {kernels_of<S>()...};
+}
+constexpr TaylorTable table = table_of(model::Scenes{});
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include "numerics/arclength.hpp"
 
+#include "numerics/bordered.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,13 +9,7 @@
 namespace percuss::numerics {
 namespace {
 
-/// The square matrix with the Jacobian above and one more row below.
-Matrix bordered(const Matrix& jacobian, const Vector& row) {
-    Matrix m(row.size(), row.size());
-    m.topRows(jacobian.rows()) = jacobian;
-    m.bottomRows(1) = row.transpose();
-    return m;
-}
+using Linear = Linearised<Vector, Matrix>;
 
 }  // namespace
 
@@ -24,7 +20,7 @@ ArclengthWalker::ArclengthWalker(CurveFunction function, ArclengthOptions option
 bool ArclengthWalker::solve_tangent(const Vector& orientation) {
     Vector right = Vector::Zero(orientation.size());
     right[right.size() - 1] = 1.0;
-    const Vector t = bordered(jacobian_, orientation).partialPivLu().solve(right);
+    const Vector t = bordered_below(jacobian_, orientation).partialPivLu().solve(right);
     if (!t.allFinite()) { return false; }
     tangent_ = t.normalized();
     return true;
@@ -36,48 +32,60 @@ bool ArclengthWalker::start(const Vector& u, double direction) {
     return start_along(u, along);
 }
 
+bool ArclengthWalker::on_plane(const Vector& u, const Vector& through, const Vector& normal, Matrix& jacobian,
+                               Vector& residual, Matrix& bordered) {
+    if (!function_(u, f_, jacobian)) { return false; }
+    residual.resize(u.size());
+    residual.head(f_.size()) = f_;
+    residual[residual.size() - 1] = normal.dot(u - through);
+    bordered = bordered_below(jacobian, normal);
+    return true;
+}
+
+NewtonOptions ArclengthWalker::newton_options() const {
+    // Predictions are close and a bad one is answered by a shorter step along the curve: the plain method.
+    return {.max_iterations = options_.newton_iterations,
+            .max_halvings = 0,
+            .residual_tolerance = options_.tolerance,
+            .step_tolerance = options_.step_tolerance,
+            .max_step = unlimited};
+}
+
 bool ArclengthWalker::start_along(const Vector& u, const Vector& direction) {
     const Vector along = direction.normalized();
-    u_ = u;
-    for (int iteration = 0; iteration < 3 * options_.newton_iterations; ++iteration) {
-        if (!function_(u_, f_, jacobian_)) { return false; }
-        Vector right = Vector::Zero(u.size());
-        right.head(f_.size()) = -f_;
-        const Vector du = bordered(jacobian_, along).partialPivLu().solve(right);
-        if (!du.allFinite()) { return false; }
-        const double scale = 1.0 + u_.norm();
-        if (f_.norm() <= options_.tolerance * scale && du.norm() <= 1e-9 * scale) {
-            step_ = options_.first_step;
-            has_previous_ = false;
-            return solve_tangent(along);
-        }
-        u_ += du;
-    }
-    return false;
+    NewtonOptions newton_at_start = newton_options();
+    // The first guess is not a prediction: three times the iterations. The point is to be on the curve as exactly as
+    // rounding allows, with the Jacobian of that very point for its tangent.
+    newton_at_start.max_iterations *= 3;
+    newton_at_start.step_tolerance = 1e-9;
+    newton_at_start.take_last_step = false;
+    // Every step is at right angles to `along`: the plane through the iterate is the one through u, without rounding.
+    const auto across = [&](const Vector& x, Linear& at) {
+        return on_plane(x, x, along, jacobian_, at.residual, at.jacobian);
+    };
+    const auto found = newton<Linear>(u, across, newton_at_start);
+    u_ = found.x;
+    if (!found.ok()) { return false; }
+    step_ = options_.first_step;
+    has_previous_ = false;
+    return solve_tangent(along);
 }
 
 bool ArclengthWalker::probe(double step, Vector& u, Vector& tangent) {
-    u = u_ + step * tangent_;
-    const Vector predicted = u;
+    const Vector predicted = u_ + step * tangent_;
     Matrix jacobian;
-    for (int iteration = 0; iteration < options_.newton_iterations; ++iteration) {
-        if (!function_(u, f_, jacobian)) { return false; }
-        Vector right(u.size());
-        right.head(f_.size()) = -f_;
-        right[right.size() - 1] = -tangent_.dot(u - predicted);
-        const auto lu = bordered(jacobian, tangent_).partialPivLu();
-        const Vector du = lu.solve(right);
-        if (!du.allFinite()) { return false; }
-        const double scale = 1.0 + u.norm();
-        if (f_.norm() <= options_.tolerance * scale && du.norm() <= options_.step_tolerance * scale) {
-            Vector unit = Vector::Zero(u.size());
-            unit[unit.size() - 1] = 1.0;
-            tangent = lu.solve(unit).normalized();
-            return tangent.allFinite();
-        }
-        u += du;
-    }
-    return false;
+    const auto across = [&](const Vector& x, Linear& at) {
+        return on_plane(x, predicted, tangent_, jacobian, at.residual, at.jacobian);
+    };
+    NewtonOptions options = newton_options();
+    options.take_last_step = false;  // the tangent belongs to the point where the Jacobian was taken
+    const auto found = newton<Linear>(predicted, across, options);
+    u = found.x;
+    if (!found.ok()) { return false; }
+    Vector unit = Vector::Zero(u.size());
+    unit[unit.size() - 1] = 1.0;
+    tangent = found.factors.solve(unit).normalized();
+    return tangent.allFinite();
 }
 
 void ArclengthWalker::predict() {
@@ -101,23 +109,15 @@ Vector ArclengthWalker::bend() const {
 }
 
 ArclengthWalker::Correction ArclengthWalker::correct() {
-    candidate_ = predicted_;
-    for (int iteration = 0; iteration < options_.newton_iterations; ++iteration) {
-        if (!function_(candidate_, f_, candidate_jacobian_)) { return Correction::rejected; }
-        Vector right(candidate_.size());
-        right.head(f_.size()) = -f_;
-        right[right.size() - 1] = -tangent_.dot(candidate_ - predicted_);
-        const Vector du = bordered(candidate_jacobian_, tangent_).partialPivLu().solve(right);
-        if (!du.allFinite()) { return Correction::rejected; }
-        const double scale = 1.0 + candidate_.norm();
-        if ((candidate_ - predicted_).norm() > options_.largest_correction * step_) { return Correction::rejected; }
-        if (f_.norm() <= options_.tolerance * scale && du.norm() <= options_.step_tolerance * scale) {
-            candidate_ += du;  // too small to be worth looking at again
-            return Correction::converged;
-        }
-        candidate_ += du;
-    }
-    return Correction::rejected;
+    // A corrector that moves far against the step has left for another branch.
+    const double furthest = options_.largest_correction * step_;
+    const auto across = [&](const Vector& x, Linear& at) {
+        return (x - predicted_).norm() <= furthest &&
+               on_plane(x, predicted_, tangent_, candidate_jacobian_, at.residual, at.jacobian);
+    };
+    const auto found = newton<Linear>(predicted_, across, newton_options());
+    candidate_ = found.x;
+    return found.ok() ? Correction::converged : Correction::rejected;
 }
 
 void ArclengthWalker::adapt(double angle) {

@@ -4,6 +4,7 @@
 /// (H. B. Keller, "Numerical solution of bifurcation and nonlinear eigenvalue problems", 1977).
 
 #include "numerics/linear.hpp"
+#include "numerics/newton.hpp"
 
 #include <functional>
 
@@ -67,6 +68,10 @@ private:
     Correction correct();
     void adapt(double angle);
     bool solve_tangent(const Vector& orientation);
+    /// F and the plane through a point across `normal`: residual and square Jacobian; F's own Jacobian in `jacobian`.
+    bool on_plane(const Vector& u, const Vector& through, const Vector& normal, Matrix& jacobian, Vector& residual,
+                  Matrix& bordered);
+    [[nodiscard]] NewtonOptions newton_options() const;
 
     CurveFunction function_;
     ArclengthOptions options_;

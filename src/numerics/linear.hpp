@@ -8,6 +8,9 @@ namespace percuss::numerics {
 
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
+using Complex = std::complex<double>;
+using ComplexVector = Eigen::VectorXcd;
+using ComplexMatrix = Eigen::MatrixXcd;
 
 /// Vectors and matrices of at most eight rows and columns, kept on the stack: orbit states, monodromy matrices,
 /// directional derivatives.

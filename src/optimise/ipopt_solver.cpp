@@ -136,6 +136,8 @@ private:
     int iterations_ = 0;
 };
 
+/// stay_put: begin where the start is, not pushed inwards as interior-point methods like it, and with a small barrier:
+/// for a start that is nearly an optimum, or beside a region where nothing can be evaluated.
 void configure(Ipopt::OptionsList& list, const Options& options, const Limits& limits, bool stay_put) {
     list.SetIntegerValue("print_level", 0);
     list.SetStringValue("sb", "yes");
@@ -169,7 +171,7 @@ std::string words_for(Ipopt::ApplicationReturnStatus status) {
         case Ipopt::Infeasible_Problem_Detected: return "converged to a local minimum of infeasibility";
         case Ipopt::Search_Direction_Becomes_Too_Small: return "search direction becomes too small";
         case Ipopt::Diverging_Iterates: return "iterates diverge";
-        case Ipopt::User_Requested_Stop: return "stopped";
+        case Ipopt::User_Requested_Stop: return "ended by request";
         case Ipopt::Maximum_Iterations_Exceeded: return "too many iterations";
         case Ipopt::Restoration_Failed: return "restoration of feasibility failed";
         case Ipopt::Error_In_Step_Computation: return "no step could be computed";
@@ -179,13 +181,14 @@ std::string words_for(Ipopt::ApplicationReturnStatus status) {
     }
 }
 
-struct Run {
+/// How one run of Ipopt ended.
+struct Ending {
     Ipopt::ApplicationReturnStatus status;
     Vector x;
     int iterations;
 };
 
-Run run_once(Guard& guard, const Vector& start, const Options& options, bool stay_put) {
+Ending run_once(Guard& guard, const Vector& start, const Options& options, bool stay_put) {
     Lock lock(ipopt_mutex());  // outlives the objects of Ipopt
     const Ipopt::SmartPtr<Problem> problem = new Problem(guard, lock, start);
     const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = IpoptApplicationFactory();
@@ -195,13 +198,19 @@ Run run_once(Guard& guard, const Vector& start, const Options& options, bool sta
     return {status, problem->x(), problem->iterations()};
 }
 
+SolverAnswer run_ipopt(Guard& guard, const Vector& start, const Options& options) {
+    Ending ending = run_once(guard, start, options, options.warm);
+    const bool never_left = ending.status != Ipopt::Solve_Succeeded && ending.iterations == 0;
+    if (never_left && !options.warm && !guard.halted()) ending = run_once(guard, start, options, true);
+    return {claim_of(ending.status), ending.x, guard.last(), "Ipopt: " + words_for(ending.status)};
+}
+
 }  // namespace
 
-SolverAnswer run_ipopt(Guard& guard, const Vector& start, const Options& options) {
-    Run run = run_once(guard, start, options, options.warm);
-    const bool never_left = run.status != Ipopt::Solve_Succeeded && run.iterations == 0;
-    if (never_left && !options.warm && !guard.halted()) run = run_once(guard, start, options, true);
-    return {claim_of(run.status), run.x, guard.last(), "Ipopt: " + words_for(run.status)};
+std::vector<Method> ipopt_methods() {
+    Capabilities local;
+    local.gradient = true;
+    return {{"ipopt", "Ipopt", local, run_ipopt}};
 }
 
 }  // namespace percuss::optimise

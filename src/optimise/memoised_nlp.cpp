@@ -89,7 +89,7 @@ const Evaluation& MemoisedNlp::look_up(const Vector& x, bool want_gradient) {
 
 /// One counted evaluation, checked for sizes and finite entries. A gradient that is not finite fails the whole.
 Evaluation MemoisedNlp::call(const Vector& x, bool want_gradient) {
-    if (limits_.stop && limits_.stop()) throw Halt(Halt::Reason::stop, "stop requested");
+    if (limits_.cancelled && limits_.cancelled()) throw Halt(Halt::Reason::cancelled, "cancelled");
     if (remaining() == 0) {
         throw Halt(Halt::Reason::budget, "max_evaluations = " + std::to_string(limits_.max_evaluations) + " spent");
     }

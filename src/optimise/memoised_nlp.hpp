@@ -2,9 +2,9 @@
 /// \file
 /// Memory, budget and archive around an expensive problem.
 
+#include "numerics/cancel.hpp"
 #include "optimise/nlp.hpp"
 
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -15,7 +15,7 @@ namespace percuss::optimise {
 /// Thrown by MemoisedNlp::evaluate instead of a further evaluation; also the reason why a Guard ended a run.
 class Halt : public std::runtime_error {
 public:
-    enum class Reason { budget, stop, circling };
+    enum class Reason { budget, cancelled, circling };
     Halt(Reason reason, const std::string& message) : std::runtime_error(message), reason_(reason) {}
     [[nodiscard]] Reason reason() const { return reason_; }
 
@@ -26,7 +26,7 @@ private:
 struct Limits {
     int max_evaluations = 2000;
     double feasibility_tolerance = 1e-9;
-    std::function<bool()> stop = {};  ///< asked before each new evaluation; empty: never
+    numerics::CancelRequest cancelled{};  ///< asked before each new evaluation
 };
 
 /// An evaluated point.

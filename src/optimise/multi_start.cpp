@@ -65,7 +65,7 @@ class Search {
 public:
     Search(Nlp& nlp, const MultiStartOptions& options)
         : options_(options),
-          memo_(nlp, {options.solver.max_evaluations, options.solver.feasibility_tolerance, options.solver.stop}) {
+          memo_(nlp, {options.solver.max_evaluations, options.solver.feasibility_tolerance, options.solver.cancelled}) {
         check(options_, memo_);
     }
 
@@ -161,7 +161,7 @@ Options Search::share(int solves_left) const {
 /// minimise, noticing when the whole budget (and not just a share) is at its end.
 Outcome Search::solve(Nlp& nlp, const Vector& start, const Options& options) {
     Outcome outcome = minimise(nlp, start, options);
-    if (outcome.status == Status::budget && (memo_.remaining() == 0 || (options.stop && options.stop()))) {
+    if (outcome.status == Status::budget && (memo_.remaining() == 0 || (options.cancelled && options.cancelled()))) {
         halted_ = outcome.message;
     }
     return outcome;

@@ -23,7 +23,7 @@ Handle create(int algorithm, int variables) {
 }
 
 /// What the callbacks need; one per run.
-struct Run {
+struct CallbackContext {
     Guard& guard;
     nlopt_opt handle;
     bool gradient;  ///< values are computed together with gradients, since the method will ask for both
@@ -31,9 +31,9 @@ struct Run {
     int objectives = 0;  ///< calls of the objective
 };
 
-/// Row -1 is the objective, the others are constraints.
-struct Row {
-    Run* run;
+/// CallbackRow -1 is the objective, the others are constraints.
+struct CallbackRow {
+    CallbackContext* context;
     Eigen::Index index;
 };
 
@@ -41,36 +41,31 @@ struct Row {
 /// COBYLA does not always look at its own limits; not before the second point, because DIRECT with constraints, stopped
 /// at its first, returns through an index that it has not set (NLopt 2.7.1, minpos in DIRect.c).
 double callback(unsigned n, const double* x, double* gradient, void* data) noexcept {
-    const auto& [run, row] = *static_cast<const Row*>(data);
+    const auto& [context, row] = *static_cast<const CallbackRow*>(data);
     const bool objective = row < 0;
-    const Evaluation& here = run->guard(Eigen::Map<const Vector>(x, n), run->gradient || gradient != nullptr);
-    if (objective) ++run->objectives;
-    if (run->guard.halted() && run->objectives > 1) nlopt_force_stop(run->handle);
+    const Evaluation& here = context->guard(Eigen::Map<const Vector>(x, n), context->gradient || gradient != nullptr);
+    if (objective) ++context->objectives;
+    if (context->guard.halted() && context->objectives > 1) nlopt_force_stop(context->handle);
     if (gradient != nullptr) {
         Eigen::Map<Vector> out(gradient, n);
         if (!here.ok) out.setZero();
         else if (objective) out = here.gradient;
         else out = here.jacobian.row(row).transpose();
     }
-    if (!here.ok) return objective ? run->penalty : 1.0;
+    if (!here.ok) return objective ? context->penalty : 1.0;
     return objective ? here.objective : here.constraints[row];
 }
 
-void check_supported(const NloptMethod& method, const MemoisedNlp& nlp) {
-    std::ostringstream message;
-    if (method.global && !(nlp.lower().allFinite() && nlp.upper().allFinite())) {
-        message << "method = " << method.name << ": it is global and needs finite bounds for every variable";
-        throw std::invalid_argument(message.str());
-    }
-    if (method.algorithm == NLOPT_LN_PRAXIS && nlp.variables() < 2) {  // NLopt's praxis never returns
-        message << "method = praxis: 1 variable, must be at least 2";
-        throw std::invalid_argument(message.str());
-    }
-    if (method.algorithm == NLOPT_GN_AGS && (nlp.variables() > 10 || nlp.constraints() > 10)) {
-        message << "method = ags: " << nlp.variables() << " variables and " << nlp.constraints()
-                << " constraints, must be at most 10 of each";
-        throw std::invalid_argument(message.str());
-    }
+/// A row of the table.
+struct NloptRow {
+    std::string name;
+    int algorithm;              ///< nlopt_algorithm when there are no constraints
+    int constrained_algorithm;  ///< and with constraints, or none: augmented Lagrangian around it
+    Capabilities capabilities;
+};
+constexpr int none = -1;
+
+void require_compiled(const NloptRow& method) {
     const std::string name = nlopt_algorithm_name(static_cast<nlopt_algorithm>(method.algorithm));
     if (name.find("NOT COMPILED") != std::string::npos) {
         throw std::runtime_error("method = " + method.name +
@@ -109,44 +104,19 @@ nlopt_result optimise_without_throwing(nlopt_opt handle, Vector& x, std::string&
     return NLOPT_FAILURE;
 }
 
-}  // namespace
-
-const std::vector<NloptMethod>& nlopt_methods() {
-    constexpr int none = -1;
-    static const std::vector<NloptMethod> table = {
-        {"slsqp", NLOPT_LD_SLSQP, NLOPT_LD_SLSQP, false, true},
-        {"mma", NLOPT_LD_MMA, NLOPT_LD_MMA, false, true},
-        {"ccsaq", NLOPT_LD_CCSAQ, NLOPT_LD_CCSAQ, false, true},
-        {"cobyla", NLOPT_LN_COBYLA, NLOPT_LN_COBYLA, false, false},
-        {"lbfgs", NLOPT_LD_LBFGS, none, false, true},
-        {"bobyqa", NLOPT_LN_BOBYQA, none, false, false},
-        {"neldermead", NLOPT_LN_NELDERMEAD, none, false, false},
-        {"subplex", NLOPT_LN_SBPLX, none, false, false},
-        {"praxis", NLOPT_LN_PRAXIS, none, false, false},
-        {"direct-l", NLOPT_GN_DIRECT_L, NLOPT_GN_ORIG_DIRECT_L, true, false},
-        {"crs2", NLOPT_GN_CRS2_LM, none, true, false},
-        {"isres", NLOPT_GN_ISRES, NLOPT_GN_ISRES, true, false},
-        {"esch", NLOPT_GN_ESCH, none, true, false},
-        {"mlsl", NLOPT_G_MLSL_LDS, none, true, true},
-        {"stogo", NLOPT_GD_STOGO, none, true, true},
-        {"ags", NLOPT_GN_AGS, NLOPT_GN_AGS, true, false},
-    };
-    return table;
-}
-
-SolverAnswer run_nlopt(Guard& guard, const Vector& start, const NloptMethod& method, const Options& options) {
+SolverAnswer run_nlopt(Guard& guard, const Vector& start, const NloptRow& method, const Options& options) {
     const MemoisedNlp& nlp = guard.nlp();
-    check_supported(method, nlp);
+    require_compiled(method);
     const int n = nlp.variables();
     const int m = nlp.constraints();
     const bool lagrangian = m > 0 && method.constrained_algorithm < 0;
     // A local method is stopped by the guard, which counts evaluations; a global one knows no other end than its count.
-    const int max_calls = method.global ? std::max(1, nlp.remaining()) : guard.max_calls();
+    const int max_calls = method.capabilities.global ? std::max(1, nlp.remaining()) : guard.max_calls();
 
     Handle handle = create(m == 0 ? method.algorithm : lagrangian ? NLOPT_AUGLAG : method.constrained_algorithm, n);
-    Run run{guard, handle.get(), method.gradient, options.failure_penalty};
-    std::vector<Row> rows;
-    for (Eigen::Index i = -1; i < m; ++i) rows.push_back({&run, i});
+    CallbackContext context{guard, handle.get(), method.capabilities.gradient, options.failure_penalty};
+    std::vector<CallbackRow> rows;
+    for (Eigen::Index i = -1; i < m; ++i) rows.push_back({&context, i});
 
     nlopt_set_min_objective(handle.get(), callback, &rows.front());
     for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -163,7 +133,8 @@ SolverAnswer run_nlopt(Guard& guard, const Vector& start, const NloptMethod& met
     }
     if (lagrangian) {
         Handle outer_local = create(method.algorithm, n);
-        set_tolerances(outer_local.get(), options.tolerance, method.global ? std::max(1, max_calls / 5) : max_calls);
+        set_tolerances(outer_local.get(), options.tolerance,
+                       method.capabilities.global ? std::max(1, max_calls / 5) : max_calls);
         if (inner) nlopt_set_local_optimizer(outer_local.get(), inner.get());
         nlopt_set_local_optimizer(handle.get(), outer_local.get());
     } else if (inner) {
@@ -175,9 +146,52 @@ SolverAnswer run_nlopt(Guard& guard, const Vector& start, const NloptMethod& met
     nlopt_srand(static_cast<unsigned long>(options.seed));  // the generator belongs to this thread
     const nlopt_result result = optimise_without_throwing(handle.get(), answer.x, answer.message);
     answer.claim = claim_of(result);
-    if (method.gradient) answer.last = guard.last();
+    if (method.capabilities.gradient) answer.last = guard.last();
     answer.message = "NLopt " + method.name + ": " + answer.message;
     return answer;
+}
+
+constexpr Capabilities local_with(bool gradient) { return {false, gradient}; }
+constexpr Capabilities global_with(bool gradient) { return {true, gradient}; }
+
+/// NLopt's praxis never returns when there is one variable only.
+constexpr Capabilities praxis_can = {false, false, 2};
+/// The limits of the AGS in NLopt.
+constexpr Capabilities ags_can = {true, false, 1, 10, 10};
+
+const std::vector<NloptRow>& table() {
+    static const std::vector<NloptRow> rows = {
+        {"slsqp", NLOPT_LD_SLSQP, NLOPT_LD_SLSQP, local_with(true)},
+        {"mma", NLOPT_LD_MMA, NLOPT_LD_MMA, local_with(true)},
+        {"ccsaq", NLOPT_LD_CCSAQ, NLOPT_LD_CCSAQ, local_with(true)},
+        {"cobyla", NLOPT_LN_COBYLA, NLOPT_LN_COBYLA, local_with(false)},
+        {"lbfgs", NLOPT_LD_LBFGS, none, local_with(true)},
+        {"bobyqa", NLOPT_LN_BOBYQA, none, local_with(false)},
+        {"neldermead", NLOPT_LN_NELDERMEAD, none, local_with(false)},
+        {"subplex", NLOPT_LN_SBPLX, none, local_with(false)},
+        {"praxis", NLOPT_LN_PRAXIS, none, praxis_can},
+        {"direct-l", NLOPT_GN_DIRECT_L, NLOPT_GN_ORIG_DIRECT_L, global_with(false)},
+        {"crs2", NLOPT_GN_CRS2_LM, none, global_with(false)},
+        {"isres", NLOPT_GN_ISRES, NLOPT_GN_ISRES, global_with(false)},
+        {"esch", NLOPT_GN_ESCH, none, global_with(false)},
+        {"mlsl", NLOPT_G_MLSL_LDS, none, global_with(true)},
+        {"stogo", NLOPT_GD_STOGO, none, global_with(true)},
+        {"ags", NLOPT_GN_AGS, NLOPT_GN_AGS, ags_can},
+    };
+    return rows;
+}
+
+}  // namespace
+
+std::vector<Method> nlopt_methods() {
+    std::vector<Method> methods;
+    for (const NloptRow& row : table()) {
+        const auto solver = [&row](Guard& guard, const Vector& start, const Options& options) {
+            return run_nlopt(guard, start, row, options);
+        };
+        methods.push_back({row.name, "NLopt", row.capabilities, solver});
+    }
+    return methods;
 }
 
 }  // namespace percuss::optimise

@@ -2,10 +2,10 @@
 /// \file
 /// Settings and outcome of one optimisation.
 
+#include "numerics/cancel.hpp"
 #include "optimise/nlp.hpp"
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <string>
 
@@ -17,7 +17,7 @@ struct Options {
     double tolerance = 1e-8;              ///< of the solver's own stopping test (KKT error or relative step)
     double feasibility_tolerance = 1e-9;  ///< a point is feasible when every c_i <= this
     std::uint64_t seed = 1;               ///< for the methods that draw random numbers
-    std::function<bool()> stop = {};      ///< asked before each evaluation; true: end now, and true from then on
+    numerics::CancelRequest cancelled{};  ///< asked before each evaluation; true from then on
     double failure_penalty = 1e6;         ///< objective that NLopt's methods see where evaluation failed
     double global_share = 0.5;            ///< part of max_evaluations that a global method has before its polish
     bool warm = false;                    ///< the start is close to an optimum (Ipopt: small barrier, no push inwards)
@@ -28,7 +28,7 @@ struct Outcome {
         not_run,
         converged,   ///< the method reports an optimum, and x, re-checked, is feasible and no worse than any point seen
         infeasible,  ///< nothing feasible was found, and the method reports a local minimum of infeasibility
-        budget,      ///< max_evaluations spent or stop() true
+        budget,      ///< max_evaluations spent or cancelled
         failed,      ///< the method gave up; the message has its words
     };
     Status status = Status::not_run;

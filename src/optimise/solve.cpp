@@ -1,8 +1,7 @@
 #include "optimise/solve.hpp"
 
 #include "optimise/certificate.hpp"
-#include "optimise/ipopt_solver.hpp"
-#include "optimise/nlopt_solver.hpp"
+#include "optimise/method.hpp"
 #include "optimise/repair.hpp"
 
 #include <algorithm>
@@ -15,17 +14,6 @@ namespace {
 
 using Status = Outcome::Status;
 
-/// Null: Ipopt.
-const NloptMethod* find_method(const std::string& name) {
-    if (name == "ipopt") return nullptr;
-    const auto& table = nlopt_methods();
-    const auto found = std::find_if(table.begin(), table.end(), [&](const NloptMethod& m) { return m.name == name; });
-    if (found != table.end()) return &*found;
-    std::string message = "method = " + name + ", must be one of";
-    for (const std::string& known : methods()) message += " " + known;
-    throw std::invalid_argument(message);
-}
-
 void check_start(const Vector& start, const MemoisedNlp& nlp) {
     if (start.size() == nlp.variables() && !start.hasNaN()) return;
     std::ostringstream message;
@@ -33,15 +21,14 @@ void check_start(const Vector& start, const MemoisedNlp& nlp) {
     throw std::invalid_argument(message.str());
 }
 
-SolverAnswer run(const NloptMethod* method, Guard& guard, const Vector& start, const Options& options) {
-    return method == nullptr ? run_ipopt(guard, start, options) : run_nlopt(guard, start, *method, options);
-}
+/// What polishes the best point of a global method.
+const Method& polisher() { return find_method("slsqp"); }
 
 /// The search of a global method on its share of the budget; returns the point to polish.
-Vector explored(MemoisedNlp& memo, const NloptMethod& method, const Vector& start, const Options& options) {
+Vector explored(MemoisedNlp& memo, const Method& method, const Vector& start, const Options& options) {
     memo.allow(static_cast<int>(std::ceil(options.global_share * options.max_evaluations)));
     Guard guard(memo);
-    (void)run_nlopt(guard, start, method, options);
+    (void)method.solver(guard, start, options);
     (void)guard.halt();  // throws what the evaluator has thrown
     memo.allow(options.max_evaluations);
     if (memo.best_feasible()) return memo.best_feasible()->x;
@@ -133,8 +120,8 @@ const char* to_string(Status status) {
 
 const std::vector<std::string>& methods() {
     static const std::vector<std::string> names = [] {
-        std::vector<std::string> list = {"ipopt"};
-        for (const NloptMethod& method : nlopt_methods()) list.push_back(method.name);
+        std::vector<std::string> list;
+        for (const Method& method : method_table()) list.push_back(method.name);
         return list;
     }();
     return names;
@@ -155,25 +142,23 @@ void check(const Options& options) {
     throw std::invalid_argument(message.str());
 }
 
-bool is_global(const std::string& method) {
-    const NloptMethod* found = find_method(method);
-    return found != nullptr && found->global;
-}
+bool is_global(const std::string& method) { return find_method(method).capabilities.global; }
 
 Outcome minimise(Nlp& nlp, const Vector& start, const Options& options) {
     check(options);
-    const NloptMethod* method = find_method(options.method);
-    MemoisedNlp memo(nlp, {options.max_evaluations, options.feasibility_tolerance, options.stop});
+    const Method* method = &find_method(options.method);
+    MemoisedNlp memo(nlp, {options.max_evaluations, options.feasibility_tolerance, options.cancelled});
     check_start(start, memo);
+    check_fits(*method, memo);
 
     Vector from = memo.clip(start);
-    if (method != nullptr && method->global) {
+    if (method->capabilities.global) {
         from = explored(memo, *method, from, options);
-        method = find_method("slsqp");
+        method = &polisher();
     }
     Guard guard(memo);
     SolverAnswer answer;
-    if (guard(from, true).ok) answer = run(method, guard, from, options);
+    if (guard(from, true).ok) answer = method->solver(guard, from, options);
     else answer.message = "the start could not be evaluated";
 
     Outcome outcome = settle(guard, answer);

@@ -16,6 +16,16 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 /// Offsets inside one contact's block of unknowns.
 enum Offset : std::uint8_t { at_speed = 0, at_phase = 1, at_duration = 2, at_rest = 3 };
 
+/// The residual's entries are of unlike size (displacements, and a gap divided by a duration): so its tolerance is
+/// absolute. Guesses come from a solution beside this one or from an orbit: no backtracking. With the speed given the
+/// step is not limited; its tolerance is that of the frequency, whose distance from grazing, 1e-9 of itself, matters.
+constexpr numerics::NewtonOptions sequence_newton{.max_iterations = 20,
+                                                  .max_halvings = 0,
+                                                  .residual_tolerance = 1e-10,
+                                                  .step_tolerance = 1e-11,
+                                                  .max_step = numerics::unlimited,
+                                                  .residual_is_relative = false};
+
 flow::State entry_state(const flow::System& system, const ContactUnknowns& contact) {
     flow::State y{};
     y[0] = system.stop_position();
@@ -245,57 +255,56 @@ std::optional<ContactSequence> sequence_of(const flow::System& system, const Orb
 }
 
 SequenceSolution solve_sequence(const flow::System& system, const ContactSequence& guess) {
+    const auto shot = [&](const Vector& z, numerics::Linearised<Vector, Matrix>& at) {
+        auto r = evaluate(system, unpack(system, z, guess.period), {});
+        if (!r) { return false; }
+        at.residual = std::move(r->value);
+        at.jacobian = std::move(r->by_unknowns);
+        return true;
+    };
+    // 0.3 keeps durations and phases from changing sign or order in one step.
+    numerics::NewtonOptions options = sequence_newton;
+    options.max_step = 0.3;
+    options.step_tolerance = 1e-10;
+    const auto found = numerics::newton<numerics::Linearised<Vector, Matrix>>(pack(system, guess), shot, options);
     SequenceSolution solution;
-    Vector z = pack(system, guess);
-    for (solution.iterations = 1; solution.iterations <= 20; ++solution.iterations) {
-        const auto r = evaluate(system, unpack(system, z, guess.period), {});
-        if (!r) { return solution; }
-        Vector step = r->by_unknowns.partialPivLu().solve(-r->value);
-        if (!step.allFinite()) { return solution; }
-        solution.residual = r->value.norm();
-        const double limit = 0.3 * (1.0 + z.norm());
-        const bool small = step.norm() <= 1e-10 * (1.0 + z.norm());
-        if (step.norm() > limit) { step *= limit / step.norm(); }
-        z += step;
-        if (small && solution.residual <= 1e-10) {
-            solution.ok = true;
-            break;
-        }
-    }
-    solution.sequence = unpack(system, z, guess.period);
+    solution.ok = found.ok();
+    solution.iterations = found.iterations;
+    solution.residual = found.residual;
+    solution.sequence = unpack(system, found.x, guess.period);
     return solution;
 }
 
 SpeedSolution solve_at_speed(const flow::System& system, const ContactSequence& guess, double omega, double speed) {
-    SpeedSolution solution;
-    ContactSequence start = guess;
-    start.contacts[0].speed = speed;
-    Vector z = pack(system, start);
-    z[at_speed] = omega;  // this place holds the frequency while the speed is given
+    struct Shot : numerics::Linearised<Vector, Matrix> {
+        Vector by_speed;
+    };
     const flow::ParameterVector by_omega = unit_direction(system.integrator->info().omega);
-    for (int iteration = 0; iteration < 20; ++iteration) {
+    const auto with_speed = [&](Vector z) {
+        z[at_speed] = speed;
+        return unpack(system, z, guess.period);
+    };
+    const auto shot = [&](const Vector& z, Shot& at) {
         const double w = z[at_speed];
-        if (!(w > 0.0)) { return solution; }
-        Vector full = z;
-        full[at_speed] = speed;
-        const auto r = evaluate(system.at_omega(w), unpack(system, full, guess.period), {&by_omega, 1});
-        if (!r) { return solution; }
-        Matrix jacobian = r->by_unknowns;
-        jacobian.col(at_speed) = r->by_directions.col(0);
-        const auto lu = jacobian.partialPivLu();
-        const Vector step = lu.solve(-r->value);
-        if (!step.allFinite()) { return solution; }
-        z += step;
-        if (step.norm() <= 1e-11 * (1.0 + z.norm()) && r->value.norm() <= 1e-10) {
-            solution.tangent = lu.solve(-r->by_unknowns.col(at_speed));
-            solution.slope = solution.tangent[at_speed];
-            solution.ok = true;
-            break;
-        }
-    }
-    solution.omega = z[at_speed];
-    z[at_speed] = speed;
-    solution.sequence = unpack(system, z, guess.period);
+        if (!(w > 0.0)) { return false; }
+        auto r = evaluate(system.at_omega(w), with_speed(z), {&by_omega, 1});
+        if (!r) { return false; }
+        at.by_speed = r->by_unknowns.col(at_speed);
+        at.residual = std::move(r->value);
+        at.jacobian = std::move(r->by_unknowns);
+        at.jacobian.col(at_speed) = r->by_directions.col(0);
+        return true;
+    };
+    Vector start = pack(system, guess);
+    start[at_speed] = omega;  // this place holds the frequency while the speed is given
+    const auto found = numerics::newton<Shot>(std::move(start), shot, sequence_newton);
+    SpeedSolution solution;
+    solution.ok = found.ok();
+    solution.omega = found.x[at_speed];
+    solution.sequence = with_speed(found.x);
+    if (!found.ok()) { return solution; }
+    solution.tangent = found.factors.solve(-found.at.by_speed);
+    solution.slope = solution.tangent[at_speed];
     return solution;
 }
 

@@ -16,15 +16,6 @@ using std::numbers::pi;
 /// Contact-sequence shooting takes this many directions at a time.
 constexpr std::size_t block_of_directions = 3;
 
-ReturnMap map_of(const Motion& motion) {
-    ReturnMap map;
-    map.stop = motion.form == Form::free ? flow::StopMode::off : flow::StopMode::hybrid;
-    map.phase = motion.phase;
-    map.period = motion.period;
-    map.mirrored = motion.mirrored;
-    return map;
-}
-
 /// P(y) - y_end, where y_end is y unless another end is given.
 std::optional<SequenceResidual> shoot_strobed(const flow::System& system, const Motion& motion,
                                               std::span<const flow::ParameterVector> directions,
@@ -89,6 +80,25 @@ double flight_before_first(const ContactSequence& sequence) {
 
 }  // namespace
 
+ReturnMap map_of(const Motion& motion) {
+    ReturnMap map;
+    map.stop = motion.form == Form::free ? flow::StopMode::off : flow::StopMode::hybrid;
+    map.phase = motion.phase;
+    map.period = motion.period;
+    map.mirrored = motion.mirrored;
+    return map;
+}
+
+Motion motion_of_map(const ReturnMap& map, const flow::State& state) {
+    Motion motion;
+    motion.form = map.stop == flow::StopMode::off ? Form::free : Form::strobed;
+    motion.period = map.period;
+    motion.mirrored = map.mirrored;
+    motion.phase = map.phase;
+    motion.state = state;
+    return motion;
+}
+
 int Motion::unknowns(const flow::System& system) const {
     return form == Form::sequence ? sequence.unknowns(system) : system.states();
 }
@@ -131,19 +141,21 @@ std::optional<SequenceResidual> shoot(const flow::System& system, const Motion& 
 }
 
 std::optional<Motion> solve(const flow::System& system, const Motion& guess) {
-    Vector z = pack(system, guess);
-    for (int iteration = 0; iteration < 20; ++iteration) {
-        const auto r = shoot(system, unpack(system, z, guess), {});
-        if (!r) { return std::nullopt; }
-        Vector step = r->by_unknowns.partialPivLu().solve(-r->value);
-        if (!step.allFinite()) { return std::nullopt; }
-        const double scale = 1.0 + z.norm();
-        const bool done = step.norm() <= 1e-9 * scale && r->value.norm() <= 1e-9 * scale;
-        if (step.norm() > 0.3 * scale) { step *= 0.3 * scale / step.norm(); }
-        z += step;
-        if (done) { return unpack(system, z, guess); }
-    }
-    return std::nullopt;
+    // Predictions along a branch or a line in the design are near: the plain method does, and where it needs more than
+    // that a shorter step of the caller is the better answer. 0.3 keeps durations and phases from changing sign or
+    // order in one step. 1e-9 before the last step is rounding size after it.
+    const numerics::NewtonOptions options{
+        .max_iterations = 20, .max_halvings = 0, .residual_tolerance = 1e-9, .step_tolerance = 1e-9, .max_step = 0.3};
+    const auto shot = [&](const Vector& z, numerics::Linearised<Vector, Matrix>& at) {
+        auto r = shoot(system, unpack(system, z, guess), {});
+        if (!r) { return false; }
+        at.residual = std::move(r->value);
+        at.jacobian = std::move(r->by_unknowns);
+        return true;
+    };
+    const auto found = numerics::newton<numerics::Linearised<Vector, Matrix>>(pack(system, guess), shot, options);
+    if (!found.ok()) { return std::nullopt; }
+    return unpack(system, found.x, guess);
 }
 
 std::optional<Orbit> strobe(const flow::System& system, const Motion& motion) {

@@ -32,6 +32,11 @@ struct Motion {
     [[nodiscard]] std::size_t contacts() const { return sequence.contacts.size(); }
 };
 
+/// The return map of a motion of free or strobed form.
+ReturnMap map_of(const Motion& motion);
+/// A motion of free (stop off) or strobed form: the fixed point `state` of a return map.
+Motion motion_of_map(const ReturnMap& map, const flow::State& state);
+
 numerics::Vector pack(const flow::System& system, const Motion& motion);
 /// The motion of the same form as `like` with unknowns z.
 Motion unpack(const flow::System& system, const numerics::Vector& z, const Motion& like);

@@ -11,30 +11,10 @@ using numerics::SmallMatrix;
 using numerics::SmallVector;
 using std::numbers::pi;
 
-/// One evaluation of the shooting equations.
-struct Iterate {
+/// The shooting equations P(y) - y = 0 at a point, with the flow that they come from.
+struct Shot : numerics::Linearised<SmallVector, SmallMatrix> {
     Image image;
-    SmallVector y;
-    SmallVector defect;  ///< P(y) - y
-    double norm = 0.0;
 };
-
-Iterate look(const flow::System& system, const ReturnMap& map, const SmallVector& y) {
-    Iterate it;
-    it.y = y;
-    it.image = apply(system, map, to_state(y), Differentiate::state);
-    if (it.image.ok()) {
-        it.defect = to_vector(system, it.image.state) - y;
-        it.norm = it.defect.norm();
-    }
-    return it;
-}
-
-SmallVector newton_step(const Iterate& it) {
-    const int n = static_cast<int>(it.y.size());
-    const SmallMatrix jacobian = SmallMatrix(it.image.derivative) - SmallMatrix::Identity(n, n);
-    return jacobian.partialPivLu().solve(-it.defect);
-}
 
 }  // namespace
 
@@ -42,41 +22,26 @@ Orbit find_orbit(const flow::System& system, const ReturnMap& map, const flow::S
                  const NewtonOptions& options) {
     Orbit orbit;
     orbit.map = map;
-    orbit.status = OrbitStatus::no_convergence;
-    Iterate current = look(system, map, to_vector(system, guess));
-    for (orbit.iterations = 1; orbit.iterations <= options.max_iterations; ++orbit.iterations) {
-        if (!current.image.ok()) {
-            orbit.status = OrbitStatus::flow_failed;
-            return orbit;
-        }
-        const double scale = 1.0 + current.y.norm();
-        SmallVector step = newton_step(current);
-        if (!step.allFinite()) { break; }
-        orbit.residual = current.norm;
-        orbit.last_step = step.norm();
-        if (current.norm <= options.residual_tolerance * scale && step.norm() <= options.step_tolerance * scale) {
-            orbit.status = OrbitStatus::converged;
-            current.y += step;
-            break;
-        }
-        if (step.norm() > options.max_step * scale) { step *= options.max_step * scale / step.norm(); }
-        Iterate next;
-        double fraction = 1.0;
-        for (int halving = 0; halving <= options.max_halvings; ++halving, fraction *= 0.5) {
-            next = look(system, map, current.y + fraction * step);
-            if (next.image.ok() && next.norm < (1.0 - 0.1 * fraction) * current.norm) { break; }
-        }
-        const bool progressed = next.image.ok() && next.norm < current.norm;
-        if (!progressed && !(current.norm <= 100.0 * options.residual_tolerance * scale)) { break; }
-        if (!progressed) {  // at the rounding floor of a badly conditioned orbit
-            if (current.norm <= 10.0 * options.residual_tolerance * scale) { orbit.status = OrbitStatus::converged; }
-            break;
-        }
-        current = std::move(next);
+    const int n = system.states();
+    const auto shoot = [&](const SmallVector& y, Shot& shot) {
+        shot.image = apply(system, map, to_state(y), Differentiate::state);
+        if (!shot.image.ok()) { return false; }
+        shot.residual = to_vector(system, shot.image.state) - y;
+        shot.jacobian = SmallMatrix(shot.image.derivative) - SmallMatrix::Identity(n, n);
+        return true;
+    };
+    auto found = numerics::newton<Shot>(to_vector(system, guess), shoot, options);
+    orbit.iterations = found.iterations;
+    if (found.status == numerics::NewtonStatus::evaluation_failed) {
+        orbit.status = OrbitStatus::flow_failed;
+        return orbit;
     }
-    orbit.state = to_state(current.y);
-    orbit.monodromy = current.image.derivative;
-    orbit.contacts = std::move(current.image.contacts);
+    orbit.status = found.ok() ? OrbitStatus::converged : OrbitStatus::no_convergence;
+    orbit.residual = found.residual;
+    orbit.last_step = found.last_step;
+    orbit.state = to_state(found.x);
+    orbit.monodromy = found.at.image.derivative;
+    orbit.contacts = std::move(found.at.image.contacts);
     return orbit;
 }
 

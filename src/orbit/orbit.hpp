@@ -4,6 +4,7 @@
 
 #include "flow/flow.hpp"
 #include "numerics/linear.hpp"
+#include "numerics/newton.hpp"
 #include "orbit/return_map.hpp"
 
 #include <optional>
@@ -18,13 +19,7 @@ enum class OrbitStatus : std::uint8_t {
     flow_failed,  ///< the flow itself failed (chatter, divergence)
 };
 
-struct NewtonOptions {
-    int max_iterations = 25;
-    int max_halvings = 8;
-    double residual_tolerance = 1e-11;  ///< on |P(y) - y|, relative to 1 + |y|
-    double step_tolerance = 1e-9;       ///< on the last Newton step, which is still taken
-    double max_step = 0.5;              ///< longest Newton step, relative to 1 + |y|
-};
+using NewtonOptions = numerics::NewtonOptions;
 
 struct Orbit {
     OrbitStatus status = OrbitStatus::not_run;

@@ -9,13 +9,18 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::array<flow::Sensitive flow::Observables::*, observable_count> members = {
+/// Observables in the order of ObservableIndex, up to those of the system's own signals.
+constexpr std::array<flow::Sensitive flow::Observables::*, first_peak> members = {
     &flow::Observables::x_max,        &flow::Observables::x_min,
     &flow::Observables::peak_force,   &flow::Observables::impact_velocity,
     &flow::Observables::contact_time, &flow::Observables::impulse,
     &flow::Observables::stop_work,    &flow::Observables::peak_acceleration,
-    &flow::Observables::peak_field,   &flow::Observables::peak_current,
     &flow::Observables::drive_work,   &flow::Observables::dissipation};
+
+const flow::Sensitive& observable(const flow::Observables& all, std::size_t i) {
+    if (i < first_peak) { return all.*members[i]; }
+    return i < first_mean ? all.peak[i - first_peak] : all.mean[i - first_mean];
+}
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
@@ -24,8 +29,8 @@ void collect(const flow::Result& result, int states, int first, int lanes, std::
     for (int lane = 0; lane < lanes; ++lane) {
         for (int k = 0; k < states; ++k) { image.derivative(k, first + lane) = result.state_d[index(k)][index(lane)]; }
         if (observe == flow::observe_nothing) { continue; }
-        for (std::size_t q = 0; q < members.size(); ++q) {
-            image.observed[q].d[index(first + lane)] = (result.observables.*members[q]).d[index(lane)];
+        for (std::size_t q = 0; q < observable_count; ++q) {
+            image.observed[q].d[index(first + lane)] = observable(result.observables, q).d[index(lane)];
         }
     }
 }
@@ -93,8 +98,8 @@ Image apply(const flow::System& system, const ReturnMap& map, const flow::State&
     }
     image.state = result.state;
     image.rate = result.rate;
-    for (std::size_t q = 0; q < members.size(); ++q) {
-        image.observed[q].value = (result.observables.*members[q]).value;
+    for (std::size_t q = 0; q < observable_count; ++q) {
+        image.observed[q].value = observable(result.observables, q).value;
     }
     image.theta_x_max = result.observables.theta_x_max;
     image.theta_x_min = result.observables.theta_x_min;

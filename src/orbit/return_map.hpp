@@ -40,11 +40,11 @@ enum ObservableIndex : std::uint8_t {
     impulse,
     stop_work,
     peak_acceleration,
-    peak_field,
-    peak_current,
     drive_work,
     dissipation,
-    observable_count
+    first_peak,  ///< the system's peak signals, then its mean signals
+    first_mean = first_peak + model::max_peaks,
+    observable_count = first_mean + model::max_means
 };
 
 /// Image of a point with derivatives; columns as for Observed.

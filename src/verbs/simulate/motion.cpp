@@ -1,0 +1,65 @@
+#include "verbs/simulate/motion.hpp"
+
+#include "design/integrators.hpp"
+#include "orbit/polish.hpp"
+
+namespace percuss::verbs {
+namespace {
+
+constexpr int patience = 2000;        // drive cycles
+constexpr double near_enough = 1e-5;  // of a settled state to its orbit, and of two states of one motion, relative
+
+void polish(const flow::System& system, Motion& motion) {
+    const orbit::Orbit found = orbit::polish_orbit(system, motion.own_state, motion.period);
+    if (!found.ok()) { return; }
+    const flow::State exact = orbit::state_at_zero(system, found);
+    if (orbit::relative_distance(system, exact, motion.own_state) > near_enough) { return; }
+    motion.polished = true;
+    motion.own_state = exact;
+    motion.max_multiplier = orbit::max_multiplier(found);
+    motion.remaining_error = found.last_step;
+}
+
+}  // namespace
+
+Motion identify_motion(const flow::System& system, const flow::State& start, const model::Scales& scales) {
+    Motion motion;
+    orbit::SettlingOptions options;
+    options.max_cycles = patience;
+    const orbit::Settling settling = orbit::settle_until_repeating(system, start, options);
+    motion.status = settling.status;
+    motion.settled = settling.settled;
+    motion.period = settling.settled ? settling.period : 0;
+    motion.cycles = settling.cycles;
+    motion.strobed_change = settling.change;
+    motion.remaining_error = settling.remaining_error;
+    motion.own_state = settling.state;
+    if (motion.status != flow::Status::ok) { return motion; }
+    if (motion.settled) { polish(system, motion); }
+
+    const int watched = motion.settled ? motion.period : options.longest_period;
+    const orbit::Extremes extremes = orbit::observe_cycles(system, motion.own_state, watched);
+    motion.status = extremes.status;
+    if (extremes.status != flow::Status::ok) { return motion; }
+    motion.contacts = extremes.contacts;
+    motion.amplitude = scales.length * extremes.amplitude();
+    motion.x_max = scales.length * extremes.x_max;
+    motion.x_min = scales.length * extremes.x_min;
+    motion.peak_force = scales.force * extremes.peak_force;
+    motion.state = design::to_user(motion.own_state, scales, system.states());
+    return motion;
+}
+
+bool same_motion(const flow::System& system, const Motion& a, const Motion& b) {
+    if (!a.settled || !b.settled || a.period != b.period) { return false; }
+    flow::State state = a.own_state;
+    for (int cycle = 0; cycle < a.period; ++cycle) {
+        if (orbit::relative_distance(system, state, b.own_state) < near_enough) { return true; }
+        const orbit::Extremes next = orbit::observe_cycles(system, state, 1);
+        if (next.status != flow::Status::ok) { return false; }
+        state = next.state;
+    }
+    return false;
+}
+
+}  // namespace percuss::verbs

@@ -1,0 +1,252 @@
+#include "verbs/sweep/sweep.hpp"
+
+#include "design/integrators.hpp"
+#include "model/number_text.hpp"
+#include "orbit/frequency_sweep.hpp"
+#include "verbs/sweep/sweep_findings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <mutex>
+#include <stdexcept>
+
+namespace percuss::verbs {
+namespace {
+
+constexpr double default_from = 0.6;  // of the linear resonance
+constexpr double default_to = 2.0;
+
+/// What both directions share.
+struct Sweep {
+    Sweep(const design::Problem& problem, const SweepOptions& how, const Observer& watcher, const StopRequest& stopper)
+        : study(how),
+          observer(watcher),
+          stop(stopper),
+          scaled(model::scale(problem.actuator)),
+          scene(design::make_integrators(problem)) {}
+
+    const SweepOptions& study;
+    const Observer& observer;
+    const StopRequest& stop;
+    model::Scaled scaled;
+    design::Integrators scene;
+    double from = 0.0;  ///< omega
+    double to = 0.0;
+    std::atomic<long> points_done = 0;
+    std::mutex mutex;  ///< of the observer
+
+    [[nodiscard]] long points_in_all() const {
+        return 2L * (study.mode == SweepMode::steps ? study.steps + 1 : study.chirp_cycles);
+    }
+    /// False when the sweep must end.
+    bool report(const std::string& line) {
+        const long done = ++points_done;
+        if (observer) {
+            const std::lock_guard lock(mutex);
+            observer(static_cast<double>(done) / static_cast<double>(points_in_all()), line);
+        }
+        return !(stop && stop());
+    }
+};
+
+SweepPoint in_user_units(double omega, const orbit::Extremes& extremes, const model::Scales& scales) {
+    SweepPoint point;
+    point.omega = omega;
+    point.drive_frequency = design::drive_frequency(omega, scales);
+    if (extremes.status != flow::Status::ok) { return point; }
+    point.x_max = scales.length * extremes.x_max;
+    point.x_min = scales.length * extremes.x_min;
+    point.amplitude = scales.length * extremes.amplitude();
+    point.peak_force = scales.force * extremes.peak_force;
+    point.contacts = extremes.contacts;
+    return point;
+}
+
+SweepPoint in_user_units(const orbit::SweptPoint& swept, const model::Scales& scales, int states) {
+    SweepPoint point = in_user_units(swept.omega, swept.extremes, scales);
+    point.cycles = swept.settling.cycles;
+    point.settled = swept.settling.settled && swept.extremes.status == flow::Status::ok;
+    point.period = point.settled ? swept.settling.period : 0;
+    point.strobed_change = swept.settling.change;
+    point.remaining_error = swept.settling.remaining_error;
+    point.state = design::to_user(swept.settling.state, scales, states);
+    return point;
+}
+
+std::string lost(flow::Status status, double omega) {
+    return "the motion was lost at omega = " + std::to_string(omega) + ": " + std::string(flow::to_string(status));
+}
+
+orbit::SettlingOptions settling_options(const SweepOptions& study) {
+    orbit::SettlingOptions options;
+    options.tolerance = study.tolerance;
+    options.max_cycles = study.max_cycles;
+    options.longest_period = study.longest_period;
+    return options;
+}
+
+std::vector<double> frequencies(const Sweep& sweep, bool forward) {
+    std::vector<double> omegas;
+    const int steps = sweep.study.steps;
+    for (int i = 0; i <= steps; ++i) {
+        omegas.push_back(i == steps ? sweep.to : sweep.from + (sweep.to - sweep.from) * i / steps);
+    }
+    if (!forward) { std::reverse(omegas.begin(), omegas.end()); }
+    return omegas;
+}
+
+void step(Sweep& sweep, const flow::System& system, const flow::State& rest, SweepDirection& direction) {
+    orbit::step_sweep(system, frequencies(sweep, direction.forward), rest, settling_options(sweep.study),
+                      [&](const orbit::SweptPoint& swept) {
+                          direction.points.push_back(in_user_units(swept, sweep.scaled.scales, system.states()));
+                          const auto status =
+                              swept.settling.status != flow::Status::ok ? swept.settling.status : swept.extremes.status;
+                          if (status != flow::Status::ok) { direction.trouble = lost(status, swept.omega); }
+                          return sweep.report("step sweep");
+                      });
+    direction.jumps = find_jumps(direction.points);
+}
+
+void chirp(Sweep& sweep, const flow::System& system, const flow::State& rest, SweepDirection& direction) {
+    const double from = direction.forward ? sweep.from : sweep.to;
+    const double to = direction.forward ? sweep.to : sweep.from;
+    const auto settled = orbit::settle_until_repeating(system.at_omega(from), rest, settling_options(sweep.study));
+    if (settled.status != flow::Status::ok) {
+        direction.trouble = lost(settled.status, from);
+        return;
+    }
+    orbit::chirp(system, from, to, sweep.study.chirp_cycles, settled.state, [&](const orbit::ChirpCycle& cycle) {
+        direction.points.push_back(in_user_units(cycle.omega, cycle.extremes, sweep.scaled.scales));
+        direction.points.back().cycles = 1;
+        if (cycle.extremes.status != flow::Status::ok) { direction.trouble = lost(cycle.extremes.status, cycle.omega); }
+        return sweep.report("chirp");
+    });
+    direction.jumps = find_chirp_jumps(direction.points);
+}
+
+SweepDirection go(Sweep& sweep, bool forward) {
+    SweepDirection direction;
+    direction.forward = forward;
+    flow::Cost cost;
+    flow::System system{sweep.scene.own.get(), sweep.scaled.parameters, &cost};
+    const flow::State rest = system.integrator->rest_state(system.parameters);
+    (sweep.study.mode == SweepMode::steps ? step : chirp)(sweep, system, rest, direction);
+    direction.periods = cost.periods();
+    return direction;
+}
+
+std::vector<SweepDirection> go_both_ways(Sweep& sweep, int jobs) {
+    std::vector<SweepDirection> directions;
+    if (jobs > 1) {
+        auto backward = std::async(std::launch::async, [&] { return go(sweep, false); });
+        directions.push_back(go(sweep, true));
+        directions.push_back(backward.get());
+    } else {
+        for (const bool forward : {true, false}) { directions.push_back(go(sweep, forward)); }
+    }
+    return directions;
+}
+
+void set_range(Sweep& sweep) {
+    const double resonance = sweep.scene.own->linear_resonance(sweep.scaled.parameters);
+    const double unit = sweep.scaled.scales.time;
+    sweep.from = sweep.study.from ? unit * *sweep.study.from : default_from * resonance;
+    sweep.to = sweep.study.to ? unit * *sweep.study.to : default_to * resonance;
+    if (!(sweep.from > 0.0 && sweep.from < sweep.to)) {
+        throw std::invalid_argument(
+            "sweep.from (here omega = " + model::number_text(sweep.from) +
+            ") must be above 0 and below sweep.to (here omega = " + model::number_text(sweep.to) + ")");
+    }
+}
+
+void check(const SweepOptions& study) {
+    if (study.steps < 1) { throw std::invalid_argument("sweep.steps: allowed is at least 1"); }
+    if (study.chirp_cycles < 1) { throw std::invalid_argument("sweep.chirp_cycles: allowed is at least 1"); }
+}
+
+/// The header of the table: states as far as the problem has them.
+std::vector<Column> columns(const StudyProblem& problem, SweepMode mode) {
+    const bool plain = problem.design.actuator.type->nondimensional;
+    const auto unit = [&](const char* name) { return plain ? std::string() : std::string(name); };
+    std::vector<Column> header = {{"omega", ""}, {"drive_frequency", unit("Hz")}, {"direction", ""}};
+    if (mode == SweepMode::steps) {
+        for (const char* name : {"cycles", "settled", "period", "strobed_change", "remaining_error"}) {
+            header.push_back({name, ""});
+        }
+    }
+    for (const char* name : {"amplitude", "x_max", "x_min"}) { header.push_back({name, unit("m")}); }
+    header.push_back({"peak_force", unit("N")});
+    header.push_back({"contacts", ""});
+    if (mode == SweepMode::chirp) { return header; }
+    for (const model::StateInfo& state : problem.design.actuator.type->states) {
+        header.push_back({std::string(state.name), plain ? std::string() : std::string(state.unit)});
+    }
+    return header;
+}
+
+std::vector<double> row_of(const SweepPoint& point, bool forward, SweepMode mode, std::size_t width) {
+    std::vector<double> row = {point.omega, point.drive_frequency, forward ? 1.0 : -1.0};
+    if (mode == SweepMode::steps) {
+        row.insert(row.end(), {static_cast<double>(point.cycles), point.settled ? 1.0 : 0.0,
+                               static_cast<double>(point.period), point.strobed_change, point.remaining_error});
+    }
+    row.insert(row.end(), {point.amplitude, point.x_max, point.x_min, point.peak_force,
+                           std::isnan(point.amplitude) ? design::absent : static_cast<double>(point.contacts)});
+    row.insert(row.end(), point.state.begin(), point.state.end());
+    row.resize(width, design::absent);
+    return row;
+}
+
+void write(const SweepResult& result, const StudyProblem& problem, SweepMode mode, RowSink& rows) {
+    const std::vector<Column> header = columns(problem, mode);
+    rows.header(header);
+    for (const SweepDirection& direction : result.directions) {
+        for (const SweepPoint& point : direction.points) {
+            rows.row(row_of(point, direction.forward, mode, header.size()));
+        }
+    }
+}
+
+void conclude(const Sweep& sweep, SweepResult& result) {
+    long points = 0;
+    for (const SweepDirection& direction : result.directions) {
+        points += static_cast<long>(direction.points.size());
+        if (!direction.trouble.empty() && result.reason.empty()) {
+            result.ending = Ending::some_failed;
+            result.reason = (direction.forward ? "forward: " : "backward: ") + direction.trouble;
+        }
+    }
+    if (result.ending == Ending::some_failed) { return; }
+    result.ending = points == sweep.points_in_all() ? Ending::verified : Ending::interrupted;
+    if (result.ending == Ending::interrupted) { result.reason = "stopped before the end"; }
+}
+
+}  // namespace
+
+SweepResult run_sweep(const StudyProblem& problem, const SweepOptions& study, RowSink* rows, const Observer& observer,
+                      const StopRequest& stop) {
+    const auto start = std::chrono::steady_clock::now();
+    check(study);
+    Sweep sweep(problem.design, study, observer, stop);
+    set_range(sweep);
+
+    SweepResult result;
+    result.from_omega = sweep.from;
+    result.to_omega = sweep.to;
+    result.from = design::drive_frequency(sweep.from, sweep.scaled.scales);
+    result.to = design::drive_frequency(sweep.to, sweep.scaled.scales);
+    result.directions = go_both_ways(sweep, problem.jobs);
+    conclude(sweep, result);
+    if (study.mode == SweepMode::steps) {
+        result.comparison = compare(result.directions[0].points, result.directions[1].points, study.tolerance);
+    }
+    if (rows != nullptr) { write(result, problem, study.mode, *rows); }
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+}  // namespace percuss::verbs
