@@ -116,7 +116,7 @@ VectorEvaluation UnitProblem::evaluate(const Vector& u, bool want_gradient) {
 /// One counted evaluation in units of the problem, derivatives with respect to u, checked for sizes and finite entries.
 VectorEvaluation UnitProblem::call(const Vector& u, bool want_gradient) {
     using optimise::Halt;
-    if (budget_.cancelled && budget_.cancelled()) throw Halt(Halt::Reason::stop, "cancelled");
+    if (budget_.cancelled && budget_.cancelled()) throw Halt(Halt::Reason::cancelled, "cancelled");
     if (evaluations_ >= budget_.max_evaluations) {
         throw Halt(Halt::Reason::budget, "max_evaluations = " + std::to_string(budget_.max_evaluations) + " spent");
     }
