@@ -141,6 +141,7 @@ private:
         for (double value : options_.exact) {
             if ((value - va) * (value - vb) < 0.0) { passed.push_back(value); }
         }
+        // In the order in which the step passed them.
         std::sort(passed.begin(), passed.end(), [&](double x, double y) { return (x < y) == (va < vb); });
         for (double value : passed) { add_at(a, b, value); }
     }

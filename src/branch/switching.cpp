@@ -92,6 +92,7 @@ bool passes_through(const flow::ParameterFamily& family, const Branch& branch, c
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
         const Point& a = *way[i];
         const Point& b = *way[i + 1];
+        // A branch may pass the parameter several times: every pair of neighbours around it is tried.
         if ((a.parameter - p) * (b.parameter - p) > 0.0) { continue; }
         if (a.motion.form != b.motion.form || a.motion.contacts() != b.motion.contacts()) {
             // Around a grazing point: either form, from its own side.

@@ -220,6 +220,7 @@ private:
         const Motion motion = orbit::motion_of(family_.base, orbit);
         if (motion.form == Form::strobed) { return; }
         const Look seen = look(family_, motion, last_.point.parameter);
+        // Only where the sequence has the contacts that the flow meets; else a few more points are strobed.
         if (seen.ok() && seen.point.contacts.size() == motion.contacts()) {
             restart(motion, "the motion could not be followed with its new contacts");
         }
