@@ -40,7 +40,7 @@ double settled_amplitude(const flow::System& system, const flow::State& from) {
     flow::Request request;
     request.state = from;
     request.duration = 2.0 * pi * (cycles - last);
-    // 64 a cycle on average: a motion that bounces more is not waited for, the size of the box does not hang on it.
+    // 64 a cycle on average: a motion that bounces more counts as not followed, and the gap gives the box its size.
     request.max_events = 64 * cycles;
     flow::Result result;
     system.run(request, result);
