@@ -9,7 +9,9 @@ namespace {
 
 /// On a torus the tangent vector neither grows nor shrinks in the long run: the sum of its logarithms stays within what
 /// it changes by in one turn.
+/// A chaotic motion of exponent L adds 4096 L over the default run: 6 is passed from 1.5e-3 per cycle on.
 constexpr double bounded_swing = 6.0;
+/// A wider error of the exponent, per cycle, leaves room for chaos: undecided rather than quasi-periodic.
 constexpr double sharp_error = 1e-2;
 
 }  // namespace

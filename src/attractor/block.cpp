@@ -14,8 +14,12 @@ namespace {
 using std::numbers::pi;
 
 /// Newton's method is tried at these cycles and then each half as many cycles later.
+/// Evenly at first, as most motions settle soon and an orbit found early captures all the others; then ever more
+/// rarely, as what has not settled by then does so slowly and each look costs Newton steps.
 constexpr int first_look = 16;
 constexpr int evenly_until = 64;
+/// Near a fold or flip the distance shrinks by the multiplier each cycle and no faster: at 0.997 it takes 3000 cycles
+/// to fall to 1e-4 of itself. Four thousand are enough there; closer to 1 a start may stay unclassified.
 constexpr int more_for_creeping = 4;
 /// Recurrences farther than this, in units of the box, are not worth a try.
 constexpr double near_recurrence = 1e-2;
@@ -26,6 +30,7 @@ constexpr int failures_per_look = 6;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
+/// Cycle of the next try of Newton's method: 16, 32, 48, 64, 96, 144, 216, ...
 int next_look(int cycle) { return cycle < evenly_until ? cycle + first_look : cycle + cycle / 2; }
 
 class BlockFollower {
@@ -54,6 +59,7 @@ public:
             advance();
             if (cut_short()) { break; }
             ++cycle;
+            // Once per memory: is_creeping() is asked of strobed states that it has not seen yet.
             if (cycle >= options_.max_cycles && (cycle - options_.max_cycles) % options_.memory == 0) { retire(); }
             if (cycle < look) { continue; }
             search();
@@ -115,6 +121,7 @@ private:
         }
         auto& history = track.history;
         const std::size_t memory = index(options_.memory);
+        // Half is dropped at once, so that a state is moved once on average and not at every strobe.
         if (history.size() >= 2 * memory) {
             history.erase(history.begin(), history.end() - static_cast<std::ptrdiff_t>(memory));
         }
@@ -137,6 +144,7 @@ private:
             if (failures >= failures_per_look) { return; }
             Track& track = tracks_[candidate.start];
             const Recurrence& recurrence = candidate.recurrence;
+            // Nothing is tried that settles on an orbit which is already known: capture will tell, for less.
             const bool is_worth_it =
                 recurrence.distance <= closer_again * track.tried && is_news(known_, recurrence, track.history.back());
             if (!is_worth_it) { continue; }
@@ -151,6 +159,7 @@ private:
         const auto orbit = stable_orbit(counted_.exact, z, period);
         if (!orbit) { return false; }
         auto learnt = make_known(counted_.systems, *orbit, scale_);
+        // Counted as a failure: the motion is on its way to a known orbit, and Newton's method jumped ahead.
         if (find_known(known_, *learnt)) { return false; }
         known_.push_back(std::move(learnt));
         traps_.push_back(&known_.back()->trap);

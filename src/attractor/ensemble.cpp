@@ -50,6 +50,7 @@ void in_parallel(long count, int jobs, const Work& work) {
         } catch (...) {
             const std::lock_guard lock(guard);
             if (!failure) { failure = std::current_exception(); }
+            // No work is begun behind a failure.
             next = count;
         }
     };
@@ -171,6 +172,8 @@ Ensemble find_attractors(const Systems& systems, const Box& box, const EnsembleO
     const std::size_t given_count = known.size();
     Blocks blocks(systems, box, options, false);
     std::vector<BlockResult> results(index(blocks.count()));
+    // The first block alone: what it finds has not to be found again in every other, and is the same for any number of
+    // threads.
     results[0] = blocks.follow(0, known);
     known.insert(known.end(), results[0].found.begin(), results[0].found.end());
     const std::size_t common = known.size();
@@ -186,6 +189,8 @@ Ensemble find_attractors(const Systems& systems, const Box& box, const EnsembleO
     for (std::size_t b = 0; b < results.size(); ++b) {
         const BlockResult& block = results[b];
         ensemble.cycles += block.cycles;
+        // Blocks behind the one that met a limit do not count, even if a thread has finished them: with one thread they
+        // would not have been begun.
         if (limits.met_by(block)) {
             ensemble.status = limits.status<Ensemble::Status>();
             continue;
@@ -200,6 +205,7 @@ Ensemble find_attractors(const Systems& systems, const Box& box, const EnsembleO
     ensemble.starts = static_cast<long>(ensemble.led_to.size());
 
     LeftoverJudge judge(counted.systems, box, all, options.leftovers);
+    // Aperiodic motions are numbered behind the periodic ones, of which judging may still add some.
     std::vector<std::pair<std::size_t, int>> aperiodic;
     for (const Leftover& leftover : leftovers) {
         const LeftoverJudge::Verdict verdict = judge.judge(*leftover.history);
@@ -242,6 +248,7 @@ Objection object(const Systems& systems, const Box& box, BlockResult block, cons
     all.insert(all.end(), block.found.begin(), block.found.end());
     LeftoverJudge judge(counted.systems, box, all, options.leftovers);
     for (const Follower& follower : block.followers) {
+        // One counterexample is enough: the rest is not judged.
         if (block.limit != flow::Status::ok || all.size() > known.size() || !judge.aperiodic().empty()) { break; }
         if (follower.fate == Fate::failed) { ++objection.unclassified; }
         if (follower.fate != Fate::unsettled) { continue; }
@@ -271,6 +278,7 @@ Refutation refute(const Systems& systems, const orbit::Orbit& given, const Box& 
     refutation.cycles = counted.cost.periods();
     Blocks blocks(systems, box, options, true);
     Limits limits(systems);
+    // As many blocks at a time as there are threads: at most jobs - 1 of them are in vain when the first refutes.
     for (long begun = 0; begun < blocks.count(); begun += options.jobs) {
         const long together = std::min<long>(options.jobs, blocks.count() - begun);
         std::vector<Objection> objections(index(together));

@@ -20,6 +20,7 @@ class TangentRun {
 public:
     TangentRun(const flow::System& system, const flow::State& from) : system_(system) {
         const int states = system.states();
+        // Any direction will do that is not one of those that shrink fastest; equal entries favour none.
         for (int k = 0; k < states; ++k) { tangent_.state[index(k)] = 1.0 / std::sqrt(states); }
         request_.state = from;
         request_.duration = 2.0 * pi;
@@ -67,6 +68,7 @@ void observe(const TangentRun& run, double& longest_flight, Wander& seen) {
     seen.x_max = first ? o.x_max.value : std::max(seen.x_max, o.x_max.value);
     seen.x_min = first ? o.x_min.value : std::min(seen.x_min, o.x_min.value);
     seen.peak_force = std::max(seen.peak_force, o.peak_force.value);
+    // Contacts are counted in the cycle in which they begin: one open at its start was counted in the one before.
     seen.contacts_per_cycle += static_cast<double>(
         std::count_if(result.contacts.begin(), result.contacts.end(), [](const auto& c) { return !c.open_in; }));
     if (flight(result) > longest_flight) {
@@ -77,6 +79,8 @@ void observe(const TangentRun& run, double& longest_flight, Wander& seen) {
     ++seen.cycles;
 }
 
+/// Mean of the logarithms, and its 95 % interval by Student's t from the scatter of batch means: consecutive logarithms
+/// are correlated, means of batches (128 cycles by default) nearly not.
 Exponent estimate(const std::vector<double>& logs, int batches) {
     const std::size_t length = logs.size() / index(batches);
     std::vector<double> means;
@@ -115,6 +119,7 @@ Wander wander(const flow::System& system, const flow::State& from, const Exponen
             seen.status = WanderStatus::left;
             return seen;
         }
+        // Until the vector has turned into the direction that grows most its logarithms say nothing.
         if (cycle < options.transient) { continue; }
         logs.push_back(growth);
         sum += growth;

@@ -40,6 +40,8 @@ std::shared_ptr<const KnownOrbit> make_known(const Systems& systems, const orbit
 std::optional<orbit::Orbit> stable_orbit(const flow::System& system, const flow::State& from, int period) {
     orbit::Orbit found = orbit::polish_orbit(system, from, period);
     if (!found.ok() || !(orbit::max_multiplier(found) < 1.0)) { return std::nullopt; }
+    // A motion that spirals in on an orbit of period 1 nearly recurs first after 2, 3, 6, 7 or 10 cycles: the period is
+    // what the polished orbit has, not what the recurrence was.
     const int minimal = orbit::minimal_period(system, found);
     if (minimal < found.map.period) {
         orbit::ReturnMap map = found.map;
@@ -52,6 +54,7 @@ std::optional<orbit::Orbit> stable_orbit(const flow::System& system, const flow:
 }
 
 bool same_orbit(const KnownOrbit& a, const KnownOrbit& b) {
+    // The orbits may begin at different strobe points: the first of one is compared with all of the other.
     return a.trap.period() == b.trap.period() && b.trap.distance(a.trap.points().front()) < same_point;
 }
 
@@ -76,6 +79,7 @@ std::vector<int> merge_into(KnownOrbits& known, const KnownOrbits& more) {
 
 bool is_news(const KnownOrbits& known, const Recurrence& recurrence, const flow::State& z) {
     return std::all_of(known.begin(), known.end(), [&](const auto& orbit) {
+        // With a multiplier of 1 within rounding the bound would be zero or negative and no recurrence news.
         const double lag = std::max(1.0 - orbit->trap.max_multiplier(), 1e-6);
         return recurrence.distance < clearly_closer * lag * orbit->trap.distance(z);
     });
@@ -88,6 +92,8 @@ Recurrence recurrence(std::span<const flow::State> history, int states, const fl
     if (longest < shortest) { return {}; }
     std::vector<double> distances;
     const flow::State& now = history[history.size() - 1];
+    // Two consecutive states each: a chaotic motion comes close to one of its own states by chance more often than it
+    // then stays close.
     const flow::State& before = history[history.size() - 2];
     for (int n = shortest; n <= longest; ++n) {
         const std::size_t back = history.size() - 1 - index(n);
@@ -102,6 +108,8 @@ Recurrence recurrence(std::span<const flow::State> history, int states, const fl
 }
 
 bool is_creeping(const KnownOrbits& known, std::span<const flow::State> history, int states, const flow::State& scale) {
+    // 12: as while following (FollowOptions). Moving by more than 1e-3 of the scale in a period, a motion does not
+    // creep. Four windows: that three in a row are each nearer than the one before is unlikely by chance.
     constexpr int longest = 12;
     constexpr double slow = 1e-3;
     constexpr std::size_t windows = 4;

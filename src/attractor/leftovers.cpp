@@ -27,6 +27,7 @@ LeftoverJudge::Verdict LeftoverJudge::judge(const std::vector<flow::State>& hist
 }
 
 std::optional<int> LeftoverJudge::settling_on(const std::vector<flow::State>& history) const {
+    // The orbit may have become known after the start had come near it: its last strobes are watched again.
     const auto traps = traps_of(known_);
     Watch watch;
     for (const flow::State& z : history) {
@@ -44,6 +45,7 @@ std::optional<int> LeftoverJudge::long_period(const std::vector<flow::State>& hi
     if (!orbit) { return std::nullopt; }
     auto learnt = make_known(systems_, *orbit, scale_);
     if (!find_known(known_, *learnt)) { known_.push_back(std::move(learnt)); }
+    // Newton's method may have jumped to an orbit that the motion is not on its way to: only capture counts.
     return settling_on(history);
 }
 
@@ -55,6 +57,8 @@ std::optional<LeftoverJudge::Verdict> LeftoverJudge::on_a_path(const std::vector
 }
 
 LeftoverJudge::Verdict LeftoverJudge::follow_on(const std::vector<flow::State>& history) {
+    // A run is 4160 cycles by default, where a start that is captured takes a few dozen: unlimited, a set that is not
+    // recognised again would cost far more than the ensemble.
     if (runs_ >= options_.most_runs) { return {}; }
     ++runs_;
     const auto traps = traps_of(known_);

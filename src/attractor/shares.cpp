@@ -9,6 +9,7 @@
 namespace percuss::attractor {
 namespace {
 
+/// Bounds hold with 95 %.
 constexpr double risk = 0.05;
 
 void check(long count, long starts) {
@@ -18,12 +19,15 @@ void check(long count, long starts) {
     }
 }
 
+/// Clopper and Pearson: the share of which as many starts as `count` or more come by chance with the probability of the
+/// risk.
 double lower_bound(long count, long starts, double one_sided_risk) {
     if (count == 0) { return 0.0; }
     return boost::math::binomial_distribution<>::find_lower_bound_on_p(static_cast<double>(starts),
                                                                        static_cast<double>(count), one_sided_risk);
 }
 
+/// The share of which as few as `count` or fewer do. For none that is (1 - p)^starts = risk, solved in closed form.
 double upper_bound(long count, long starts, double one_sided_risk) {
     if (count == starts) { return 1.0; }
     if (count == 0) { return -std::expm1(std::log(one_sided_risk) / static_cast<double>(starts)); }

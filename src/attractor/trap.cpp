@@ -37,6 +37,7 @@ std::vector<SmallVector> sample_directions(const SmallMatrix& upper, const Small
     const int n = static_cast<int>(upper.rows());
     std::vector<SmallVector> directions;
     const auto add = [&](const SmallVector& v) {
+        // Real eigenvectors have no imaginary part to add.
         if (!(v.norm() > 1e-12) || !v.allFinite()) { return; }
         directions.emplace_back(v.normalized());
         directions.emplace_back(-v.normalized());
@@ -68,6 +69,8 @@ Trap::Trap(const flow::System& system, const orbit::Orbit& orbit, const flow::St
 }
 
 void Trap::find_points(const flow::System& system, const orbit::Orbit& orbit) {
+    // The strobe points of the scout itself, which differ from the exact ones by its error: a motion that it follows
+    // never comes nearer to those than that.
     orbit::Orbit here = orbit::find_orbit(system, orbit.map, orbit.state);
     if (!here.ok()) { here = orbit; }
     orbit::ReturnMap cycle;
@@ -77,6 +80,7 @@ void Trap::find_points(const flow::System& system, const orbit::Orbit& orbit) {
         const orbit::Image image = orbit::apply(system, cycle, y, orbit::Differentiate::state);
         points_.push_back(y);
         derivatives_.emplace_back(image.derivative);
+        // NaN fails every later check: no radius, nothing is captured.
         if (!image.ok()) { derivatives_.back() = SmallMatrix::Constant(states_, states_, std::nan("")); }
         monodromy = (derivatives_.back() * monodromy).eval();
         y = image.state;
@@ -90,8 +94,13 @@ void Trap::adapt_norm() {
     for (int k = 0; k < states_; ++k) { weight(k, k) = 1.0 / (scale_[index(k)] * scale_[index(k)]); }
     norms_.assign(index(n), weight);
     if (!(max_multiplier_ < 1.0)) { return; }
+    // s^n is the root of the multiplier, half way (in logarithms) between the linear rate and none: with the rate
+    // itself the norm would not exist, as the sum behind it does not converge.
     const double s_squared = std::pow(std::max(max_multiplier_, fast_enough), 1.0 / n);
     shrink_ = std::sqrt(s_squared);
+    // Each round shrinks what is missing by s^(2n), the multiplier; so change/(1 - s^2) bounds it within 1e-6. The
+    // rounds suffice up to multipliers of 0.9998. Beyond, the norm is a little off, and the shells, which are flown,
+    // decide whether it serves.
     constexpr int most_rounds = 100000;
     constexpr double settled = 1e-6;
     for (int round = 0; round < most_rounds; ++round) {
@@ -151,6 +160,7 @@ bool Trap::agrees(int j, const flow::State& before, const flow::State& after) co
     for (int a = 0; a < states_; ++a) {
         for (int b = 0; b < states_; ++b) { defect[index(a)] -= derivatives_[index(j)](a, b) * from[index(b)]; }
     }
+    // Near the centre the allowed defect shrinks with the distance until the integration error is larger.
     return length(next, defect) <= std::max(0.5 * (1.0 - shrink_) * length(j, from), noise);
 }
 
@@ -179,6 +189,7 @@ bool Trap::shell_agrees(const flow::System& system, double radius) const {
         const SmallMatrix upper = SmallMatrix(norms_[index(j)].llt().matrixU());
         shell.clear();
         for (const SmallVector& u : sample_directions(upper, monodromy)) {
+            // Q = U^T U: |U d| = radius on the shell.
             const SmallVector d = radius * upper.triangularView<Eigen::Upper>().solve(u);
             flow::State z = points_[index(j)];
             for (int k = 0; k < states_; ++k) { z[index(k)] += d[k]; }
@@ -200,11 +211,14 @@ void Trap::find_radius(const flow::System& system) {
     while (trial >= smallest_radius && !shell_agrees(system, trial)) { trial *= 0.1; }
     if (trial < smallest_radius) { return; }
     radius_ = trial;
+    // Outwards shell by shell, each agreeing before the next is asked: one far out that agrees by chance says nothing
+    // of what lies within.
     while (radius_ < largest_radius && shell_agrees(system, 2.0 * radius_)) { radius_ *= 2.0; }
 }
 
 std::optional<int> Watch::see(const flow::State& z, std::span<const Trap* const> traps) {
     if (trap_ >= 0 && follow(z, *traps[index(trap_)])) {
+        // A whole period; of short ones three cycles, as a motion that only passes may agree once or twice.
         const bool captured = agreements_ >= std::max(3, traps[index(trap_)]->period());
         return captured ? std::optional<int>(trap_) : std::nullopt;
     }
@@ -213,6 +227,7 @@ std::optional<int> Watch::see(const flow::State& z, std::span<const Trap* const>
 }
 
 bool Watch::follow(const flow::State& z, const Trap& trap) {
+    // The ellipsoid is not asked again: each cycle that agrees shrinks the distance.
     if (!trap.agrees(point_, last_, z)) { return false; }
     point_ = (point_ + 1) % trap.period();
     last_ = z;

@@ -27,6 +27,7 @@ double angle_nearest_circle(const flow::System& system, const orbit::ReturnMap& 
     const auto values = numerics::SmallMatrix(image.derivative).eigenvalues().eval();
     for (const std::complex<double>& mu : values) {
         const double distance = std::abs(std::abs(mu) - 1.0);
+        // One of each complex pair, none of the real ones.
         if (mu.imag() > 1e-12 && distance < nearest) {
             nearest = distance;
             angle = std::arg(mu);
@@ -49,6 +50,8 @@ CriticalOptions options_near(const flow::System& system, double omega) {
     options.newton.min_iterations = 2;
     // An edge is solved for at every design: its directions ride along with the last iteration instead of one more.
     options.directions_join_below = 1e-3;
+    // The guess lies within a step of the branch: Newton's method that has gone five times as far in frequency will not
+    // come back to this boundary.
     options.lowest = 0.2 * omega;
     options.highest = 5.0 * omega;
     return options;
@@ -77,6 +80,7 @@ orbit::Observed clearance(const flow::System& system, const orbit::ReturnMap& ma
     result.value = sign * (extreme.value - centre) - (system.stop_position() - centre);
     for (std::size_t c = 0; c < extreme.d.size(); ++c) { result.d[c] = sign * extreme.d[c]; }
     for (std::size_t i = 0; i < directions.size(); ++i) {
+        // d [sign (x - centre) - (stop - centre)]: what the centre and the stop move by, beside x.
         const double dc = system.integrator->centre_derivative(system.parameters, directions[i]);
         const double ds = system.integrator->stop_position_derivative(system.parameters, directions[i]);
         result.d[static_cast<std::size_t>(system.states()) + i] += -sign * dc - (ds - dc);
@@ -92,6 +96,7 @@ Boundary solve_boundary(const flow::System& system, const orbit::ReturnMap& map,
                         double omega, std::span<const flow::ParameterVector> directions) {
     const flow::ParameterFamily family = flow::along_frequency(system, 1.0);
     const orbit::Motion motion = orbit::motion_of_map(map, guess);
+    // The angle is an unknown of the torus: its guess is that of the pair at the guessed orbit.
     const double angle = kind == Kind::torus ? angle_nearest_circle(system.at_omega(omega), map, guess) : 0.0;
     const CriticalPoint point =
         solve_critical(family, kind, motion, omega, 0, angle, 1.0, directions, options_near(system, omega));

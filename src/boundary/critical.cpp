@@ -38,8 +38,10 @@ std::optional<Matrix> along(const flow::System& system, const Motion& motion, co
     const Vector z = orbit::pack(system, motion);
     const auto columns = z.size() + static_cast<Eigen::Index>(directions.size());
     const double length = std::max(beginning.norm(), end.norm());
+    // The imaginary part of a real mode.
     if (!(length > 0.0)) { return Matrix::Zero(z.size(), columns); }
     // Central differences of exact derivatives: error h^2, rounding 1e-14/h. It slows Newton's method, no more.
+    // Both are of one size near h = 1e-14^(1/3) = 2e-5.
     const double h = 1e-5 / length;
     Matrix sum = Matrix::Zero(z.size(), columns);
     for (double sign : {1.0, -1.0}) {
@@ -160,9 +162,12 @@ std::optional<CriticalResidual> CriticalEquations::on_circle(const flow::System&
     if (!r) { return std::nullopt; }
     CriticalResidual out = with_room(*r);
     const bool torus = kind_ == Kind::torus;
+    // The bordered system of the header: A(mu) v + b g = 0, c^H v = 1; g is zero where A is singular.
     const Complex mu = torus ? std::polar(1.0, angle) : Complex(kind_ == Kind::flip ? -1.0 : 1.0);
     const auto b =
         numerics::solve_bordered<Complex>(r->by_unknowns.cast<Complex>() + (mu - 1.0) * r->by_closing.cast<Complex>());
+    // A period after a beginning moved by v the mode is moved by mu v. shoot() is real: a complex mode is taken in its
+    // real and its imaginary part, in which the derivative is linear.
     const ComplexVector end = mu * b.v;
     const auto real = along(system, motion, b.v.real(), end.real(), directions);
     if (!real) { return std::nullopt; }
@@ -178,12 +183,14 @@ std::optional<CriticalResidual> CriticalEquations::on_circle(const flow::System&
     row.head(n_) = slope.head(n_);
     row.tail(given) = slope.tail(given);
     Complex g = b.g;
+    // By the angle: A_phi = i mu F_closing.
     if (torus) { row[n_] = -(b.w.adjoint() * (Complex(0.0, 1.0) * mu * r->by_closing.cast<Complex>()) * b.v)(0); }
     if (kind_ == Kind::fold && motion.form == orbit::Form::sequence) {
         // At grazing the sequence is stationary in its speed, which makes A singular too: that root is divided out.
         const int slowest = slowest_contact(motion);
         const double speed = motion.sequence.contacts[static_cast<std::size_t>(slowest)].speed;
         if (speed == 0.0) { return std::nullopt; }
+        // d(g/v) = (dg - (g/v) dv)/v.
         row[slowest * motion.sequence.unknowns_per_contact(system)] -= g / speed;
         row /= speed;
         g /= speed;
@@ -217,6 +224,7 @@ public:
         const double p = equations_.parameters(u).front();
         left_bounds_ = !(p > options_.lowest && p < options_.highest);
         if (left_bounds_) { return false; }
+        // Directions cost their columns in every flow: they are left out until the iteration is about to end.
         const bool joined = before_.size() > 0 && (u - before_).norm() < options_.directions_join_below * scale_before_;
         scale_before_ = numerics::scale_of(u, options_.newton);
         before_ = u;
@@ -253,6 +261,7 @@ Matrix implicit_derivatives(const Eigen::PartialPivLU<Matrix>& factors, const Ma
     return d;
 }
 
+/// An iterate that left the bounds is not evaluated, which is no failure of the flow.
 SolveStatus to_status(numerics::NewtonStatus status, bool left_bounds) {
     if (status == numerics::NewtonStatus::converged) { return SolveStatus::converged; }
     const bool flow_failed = status == numerics::NewtonStatus::evaluation_failed && !left_bounds;

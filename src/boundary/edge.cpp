@@ -13,11 +13,13 @@ struct Passed {
     bool stability = false;
     bool fold = false;
     bool hump = false;  ///< the largest displacement had a maximum inside the step
+    // A fold is a loss of stability as well: one event.
     [[nodiscard]] int events() const { return (grazing ? 1 : 0) + ((stability || fold) ? 1 : 0); }
 };
 
-/// Upper estimate of the clearance inside a step whose ends have slopes of opposite sign: where the tangents meet.
+/// Upper estimate of the clearance inside a step whose ends have slopes of opposite sign.
 double hump_height(const FreePoint& a, const FreePoint& b, double length) {
+    // The clearance near its maximum is concave: it stays below either tangent, carried across the whole step.
     const double from_a = a.clearance + a.clearance_slope * length;
     const double from_b = b.clearance - b.clearance_slope * length;
     return std::max({a.clearance, b.clearance, std::min(from_a, from_b)});
@@ -32,6 +34,7 @@ Passed compare(const FreePoint& a, const FreePoint& b) {
     return passed;
 }
 
+/// Linear interpolation of frequency and state, a guess for Newton's method.
 FreePoint between(const FreePoint& a, const FreePoint& b, double share) {
     FreePoint p = a;
     p.omega = a.omega + share * (b.omega - a.omega);
@@ -46,7 +49,9 @@ bool strikes(const flow::System& system, const flow::State& from, int cycles, bo
     if (failed) { return false; }
     flow::Request request;
     request.state = *settled;
+    // 24 cycles show the contact of a motion that strikes once in 2, 3, 4, 6, 8 or 12 of them.
     request.duration = 2.0 * std::numbers::pi * 24;
+    // 83 contact events a cycle: a motion that bounces more is told as one that could not be followed.
     request.max_events = 2000;
     flow::Result result;
     system.run(request, result);
@@ -56,6 +61,8 @@ bool strikes(const flow::System& system, const flow::State& from, int cycles, bo
 
 /// Sets the branch out above everything: at start_ratio times the resonance, higher where the stop is still in reach.
 bool start_above(FreeBranch& branch, double resonance, const EdgeOptions& options) {
+    // Above resonance the motion falls with the square of the frequency: each attempt leaves a third of it (1.7^2 =
+    // 2.9). The last is at 1000 times the resonance.
     double ratio = options.start_ratio;
     for (int attempt = 0; attempt < 12; ++attempt, ratio *= 1.7) {
         if (branch.start(ratio * resonance) && branch.current().stable() && branch.current().clearance < 0.0) {
@@ -92,11 +99,13 @@ void settle_edge(Edge& edge, const FreeBranch& branch, const flow::System& syste
         edge.status = EdgeStatus::found;
         return;
     }
+    // By the leading multiplier beyond; at a fold the frequency has turned, which is the surer sign.
     const Kind kind = passed.fold ? Kind::fold : b.nearest;
     FreePoint guess = between(a, b, 0.5);
     if (passed.fold) {
         guess = between(a, b, a.omega_slope / (a.omega_slope - b.omega_slope));
     } else if (b.radius > a.radius) {
+        // Where the leading multiplier passes through 1, linearly; the middle where its modulus does not grow.
         guess = between(a, b, (1.0 - a.radius) / (b.radius - a.radius));
     }
     edge.boundary = solve_boundary(system, map, kind, guess.state, guess.omega, directions);
@@ -144,6 +153,9 @@ Edge find_edge(FreeBranch& branch, const flow::System& system, const EdgeOptions
         const FreePoint& b = branch.current();
         const Passed passed = compare(a, b);
         const double length = b.arclength - a.arclength;
+        // Events are told from the ends of a step. Two in one step have no order; a hump may have touched inside; and
+        // from further than 0.3 the guess for Newton's method, interpolated, is poor. Below 1e-4 two events are taken
+        // as one, grazing first.
         const bool too_coarse =
             length > 1e-4 && (passed.events() > 1 || (passed.hump && hump_height(a, b, length) >= 0.0) ||
                               (passed.events() == 1 && length > 0.3));
@@ -171,6 +183,7 @@ FreeOrbitsAt free_orbits_at(FreeBranch& branch, const flow::System& system, doub
     for (int step = 0; step < 200; ++step) {
         const FreePoint& a = branch.previous();
         const FreePoint& b = branch.current();
+        // The branch turns back at folds: every passage of the frequency, either way, is a motion there.
         if ((a.omega > omega) != (b.omega > omega)) {
             const FreePoint guess = between(a, b, (omega - a.omega) / (b.omega - a.omega));
             const orbit::Orbit free = orbit::find_orbit(system.at_omega(omega), map, guess.state);
@@ -182,10 +195,12 @@ FreeOrbitsAt free_orbits_at(FreeBranch& branch, const flow::System& system, doub
                 point.omega = omega;
                 point.clearance = clearance(system.at_omega(omega), map, image, {}).value;
                 point.radius = orbit::max_multiplier(free);
+                // Of the half-cycle map, as on the branch: its multipliers squared are those of the cycle.
                 if (map.mirrored) { point.radius = std::sqrt(point.radius); }
                 found.points.push_back(point);
             }
         }
+        // Below `lowest` but on the way up the branch may come back across the frequency.
         if (b.omega < lowest && b.omega_slope < 0.0) {
             found.complete = true;
             return found;

@@ -31,6 +31,9 @@ FreeBranch::FreeBranch(const flow::System& system)
       scale_(system.integrator->linear_resonance(system.parameters)),
       origin_(system.integrator->rest_state(system.parameters)),
       walker_([this](const Vector& u, Vector& f, Matrix& j) { return evaluate(u, f, j); },
+              // A resonance peak is many times the static response that is one unit: steps may be 20 long, held by the
+              // angle and by half a resonance of frequency. The branch is a scout's: what it meets is refined by
+              // equations of its own, and 1e-5 is enough to meet it.
               {.first_step = 0.2,
                .largest_step = 20.0,
                .largest_parameter_step = 0.5,
@@ -70,6 +73,8 @@ bool FreeBranch::evaluate(const Vector& u, Vector& f, Matrix& jacobian) {
     f = to_scaled(image_.state, 0.0).head(n) - u.head(n);
     jacobian = image_.derivative;
     for (int k = 0; k < n; ++k) {
+        // From derivatives of states by states and frequency to scaled ones: rows are states reached, columns states
+        // set out from.
         jacobian.row(k) /= measure_[static_cast<std::size_t>(k)];
         jacobian.col(k) *= measure_[static_cast<std::size_t>(k)];
     }
@@ -92,6 +97,8 @@ FreePoint FreeBranch::describe() const {
         point.clearance_slope += c.d[static_cast<std::size_t>(k)] * t[k] * measure_[static_cast<std::size_t>(k)];
     }
     point.clearance_slope += c.d[static_cast<std::size_t>(n)] * scale_ * t[n];
+    // The leading multiplier tells which boundary lies where it leaves the circle: a complex one a torus, a real one a
+    // fold or a flip by its sign.
     const auto values = SmallMatrix(image_.derivative.leftCols(n)).eigenvalues().eval();
     std::complex<double> leading = 0.0;
     for (int k = 0; k < values.size(); ++k) {
@@ -120,6 +127,7 @@ bool FreeBranch::start(double omega) {
     const double room = there.stop_position() - origin_[0];
     const double amplitude = clearance(there, map_of(system_), image, {}).value + room;
     const double ratio = omega / scale_;
+    // The floor keeps the unit from vanishing where the mass rests beside the stop or hardly moves.
     set_measure(std::max(std::min(room, amplitude * std::max(1.0, ratio * ratio - 1.0)), 1e-4));
     if (!walker_.start(to_scaled(orbit.state, omega), -1.0)) { return false; }
     current_ = describe();
@@ -130,6 +138,7 @@ bool FreeBranch::start(double omega) {
 bool FreeBranch::advance() {
     // A step longer than the motion is large could pass through rest, where the branches on either side of the
     // resonance meet at small losses, and go on on the wrong one.
+    // High above resonance the motion is small: 0.2, the first step, is always allowed.
     walker_.limit_step(std::max(0.5 * walker_.point().head(system_.states()).norm(), 0.2));
     if (!walker_.advance()) { return false; }
     const Vector from = to_scaled(current_.state, current_.omega);

@@ -18,6 +18,7 @@ struct Probe {
     orbit::SpeedSolution solution;
 };
 
+/// The motion of the impacting branch at this entry speed, with its slope.
 Probe probe(const flow::System& system, const orbit::ContactSequence& guess, double omega, double speed) {
     Probe p;
     p.speed = speed;
@@ -64,6 +65,7 @@ void follow_by_arclength(const flow::System& system, const Boundary& grazing, co
         if (slope >= 0.0) {
             // omega along the step: s in [0, 1], slopes per step length
             const double length = (walker.point() - before).norm();
+            // Where the slope passes through zero, linearly; there the cubic with the ends' values and slopes.
             const double s = slope_before / (slope_before - slope);
             const double h00 = (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s);
             const double h10 = s * (1.0 - s) * (1.0 - s);
@@ -78,6 +80,7 @@ void follow_by_arclength(const flow::System& system, const Boundary& grazing, co
             fold.sequence = orbit::unpack(system, walker.point().head(n), 1);
             return;
         }
+        // Back at grazing or beyond it: that is no motion.
         if (walker.point()[0] <= 0.0) { return; }
         if (1.0 - walker.point()[n] > fold.reach) {
             fold.status = GrazingFold::Status::none;
@@ -94,6 +97,8 @@ bool bracket_fold(const flow::System& system, const Boundary& grazing, GrazingFo
         const double speed = low.speed * factor;
         high = probe_from(system, low, speed);
         if (!high.ok) {
+            // No motion so far up, or none found from so far off: half as far, in logarithms. Where even a tenth more
+            // fails the speed itself turns back.
             factor = std::sqrt(factor);
             if (factor < 1.1) {
                 follow_by_arclength(system, grazing, low, fold);
@@ -108,6 +113,9 @@ bool bracket_fold(const flow::System& system, const Boundary& grazing, GrazingFo
         }
         const double slope = (high.value - low.value) / (high.speed - low.speed);
         const double crossing = high.speed - high.value / slope;
+        // 5 % beyond the crossing, so that the fold is bracketed; not further than thirty times, where a line through
+        // two probes says nothing any more, and not less than twice, so that a crossing placed too near does not make
+        // it creep.
         factor = slope > 0.0 ? std::clamp(1.05 * crossing / high.speed, 2.0, 30.0) : 4.0;
         low = high;
     }
@@ -133,6 +141,7 @@ orbit::ContactSequence grazing_sequence(const flow::System& system, const orbit:
     }
     // x'' = omega dv/dtheta < 0: a contact entered with speed v lasts 2 v / |x''| in tau.
     const double deceleration = -result.rate[1] * grazing.omega;
+    // The speed of the first probe: its contact is the grazing motion's parabola cut at the stop.
     constexpr double unit_speed = 1e-6;
     contact.speed = unit_speed;
     contact.duration = 2.0 * unit_speed / deceleration * grazing.omega;
@@ -148,6 +157,7 @@ GrazingFold find_fold_beside(const flow::System& system, const Boundary& grazing
     const orbit::ContactSequence start = grazing_sequence(system, map, grazing);
     Probe low = probe(system, start, grazing.omega, 1e-6);
     if (!low.ok) { return fold; }
+    // The frequency rises with the speed from the start, back over the range of the free motion.
     if (low.value >= 0.0) {
         fold.status = GrazingFold::Status::at_once;
         fold.omega = grazing.omega;
@@ -170,6 +180,7 @@ GrazingFold find_fold_beside(const flow::System& system, const Boundary& grazing
         if (middle.value < 0.0) {
             low = middle;
             weight_low = middle.value;
+            // Illinois: the end that stays counts for half, else it would stay for long.
             weight_high *= 0.5;
         } else {
             high = middle;

@@ -20,6 +20,7 @@ using std::numbers::pi;
 /// with the square of it.
 constexpr double small_speed = 1e-6;
 
+/// That speed at this parameter, nondimensional.
 double slow(const flow::ParameterFamily& family, double parameter, const TraceOptions& options) {
     return small_speed * options.size * family.at(parameter).omega();
 }
@@ -42,6 +43,8 @@ Motion without(const flow::System& system, const Motion& motion, int contact, co
     auto& contacts = rest.sequence.contacts;
     contacts.erase(contacts.begin() + contact);
     if (!contacts.empty()) { return rest; }
+    // With the last contact gone the form changes, to the state at phase 0 of a motion that knows no stop; over half a
+    // cycle where the symmetry allows, as free motions are followed everywhere.
     rest.form = Form::free;
     orbit::Orbit orbit;
     orbit.map.stop = flow::StopMode::off;
@@ -59,6 +62,7 @@ std::optional<double> real_side(const flow::ParameterFamily& family, const Motio
     // Scaled steps: 1e-3 is far enough from grazing for the hybrid flow to tell contact from none and mostly near
     // enough to meet no other boundary; a longer and a shorter one are tried where it is not.
     for (double step : {1e-3, 1e-2, 1e-4}) {
+        // Either way: a branch may turn back at a corner as well as go on.
         for (double direction : {preferred, -preferred}) {
             Piece piece(family, motion, options.size, options.steps);
             if (!piece.start(motion, parameter, direction)) { continue; }
@@ -74,6 +78,8 @@ std::optional<double> real_side(const flow::ParameterFamily& family, const Motio
 
 /// The contact that the hybrid flow met and the sequence does not have: the one furthest in phase from all of its own.
 flow::Contact unexpected(const Point& seen) {
+    // A contact of the sequence is met near the phase that it is solved for, if not exactly there; the new one stands
+    // apart. Without any of its own all are as far, and the first is taken.
     const double whole = 2.0 * pi * seen.motion.period;
     const flow::Contact* found = &seen.contacts.front();
     double furthest = -1.0;
@@ -94,6 +100,7 @@ flow::Contact unexpected(const Point& seen) {
 std::pair<Motion, int> with_contact(const flow::System& system, const Motion& motion, const flow::Contact& met) {
     Motion more = motion;
     more.form = Form::sequence;
+    // There is a stop on one side only: a motion that strikes has not the mirror symmetry.
     more.mirrored = false;
     more.sequence.period = motion.period;
     orbit::ContactUnknowns contact;
@@ -103,6 +110,8 @@ std::pair<Motion, int> with_contact(const flow::System& system, const Motion& mo
     }
     auto& contacts = more.sequence.contacts;
     if (!contacts.empty()) {
+        // The hybrid flow was followed for a period from a strobe phase of its own: its phases are brought into the
+        // period that begins with the first contact of the sequence, as a sequence is in order of phase.
         const double whole = 2.0 * pi * motion.period;
         double after = std::fmod(contact.phase - contacts.front().phase, whole);
         if (after < 0.0) { after += whole; }
@@ -117,6 +126,8 @@ std::pair<Motion, int> with_contact(const flow::System& system, const Motion& mo
 
 /// The strobe phase, moved by whole cycles to lie before the first contact of the sequence.
 double latest_phase_before(const Motion& motion, double phase) {
+    // The state there is integrated back from the entry: the latest such phase is the shortest way, and backwards a
+    // damped motion magnifies errors.
     const double first = motion.sequence.contacts.front().phase;
     return phase + 2.0 * pi * std::floor((first - phase) / (2.0 * pi));
 }
@@ -126,12 +137,15 @@ std::optional<Motion> old_form_at(const flow::System& system, const Motion& old_
                                   int contact) {
     if (old_form.form == Form::sequence) {
         Motion motion = grazing;
+        // A contact without speed and duration changes nothing: what is left solves the equations without it.
         motion.sequence.contacts.erase(motion.sequence.contacts.begin() + contact);
         return motion;
     }
     Motion motion = old_form;
     const auto state = orbit::state_at(system, grazing.sequence, latest_phase_before(grazing, old_form.phase));
     if (!state) { return std::nullopt; }
+    // On the flight that ends in the graze the grazing motion and the old one are the same; Newton removes what
+    // rounding has added on the way.
     motion.state = *state;
     return orbit::solve(system, motion);
 }
@@ -161,11 +175,15 @@ std::optional<CurvePoint> point_before_grazing(const flow::ParameterFamily& fami
 
 /// The corner's own point: the motion beside it, at the grazing point's parameter.
 Corner corner_at(const flow::ParameterFamily& family, const Point& near, double parameter, int contact) {
+    // The grazing motion itself cannot be looked at: the hybrid flow meets no contact of speed zero, and its
+    // multipliers are not defined there. The motion beside it stands for it: the parameter differs by the order of its
+    // speed squared.
     Corner corner;
     corner.at = near;
     corner.at.parameter = parameter;
     corner.at.omega = family.at(parameter).omega();
     corner.contact = contact;
+    // Set, not measured: Newton's method ends with a step below 1e-10 in scaled unknowns and leaves about its square.
     corner.uncertainty = 1e-12 * std::abs(parameter);
     return corner;
 }
@@ -173,6 +191,7 @@ Corner corner_at(const flow::ParameterFamily& family, const Point& near, double 
 }  // namespace
 
 std::optional<int> contact_leaving(const Motion& motion) {
+    // Of several that a step has taken beyond zero the one furthest beyond is likely to have grazed first.
     std::optional<int> leaving;
     double lowest = 0.0;
     for (std::size_t i = 0; i < motion.contacts(); ++i) {
@@ -189,6 +208,7 @@ std::optional<Corner> leave_contact(const flow::ParameterFamily& family, Piece& 
     const auto at = static_cast<Eigen::Index>(contact) * piece.motion().sequence.unknowns_per_contact(family.base);
     const double before = last.u[at];
     const double beyond = piece.point()[at];
+    // Where the speed passes through zero, by linear interpolation along the step.
     const Vector between = last.u + before / (before - beyond) * (piece.point() - last.u);
     Motion guess = piece.motion_of(between);
     // A stop that cannot pull lets a contact without speed end at a negative time as well: not to be run into.
@@ -198,6 +218,7 @@ std::optional<Corner> leave_contact(const flow::ParameterFamily& family, Piece& 
         boundary::solve_critical(family, Kind::grazing, guess, piece.parameter_of(between), contact, 0.0, options.size);
     if (!grazing.ok()) { return std::nullopt; }
     const Vector found = piece.scaled(grazing.motion, grazing.parameter);
+    // Newton's method may have gone to the grazing point of another part of the branch.
     if (!place_of(found, last.u, piece.point()).between()) { return std::nullopt; }
     auto near = point_beside_grazing(family, grazing.motion, grazing.parameter, contact, options);
     if (!near) { return std::nullopt; }
@@ -207,6 +228,8 @@ std::optional<Corner> leave_contact(const flow::ParameterFamily& family, Piece& 
     Motion rest = without(system, grazing.motion, contact, near->point);
     const auto solved = orbit::solve(system, rest);
     if (!solved) { return std::nullopt; }
+    // A subharmonic motion that has lost its last contact can be a free motion run through several times: the branch
+    // ends there, on one of shorter period.
     if (solved->form == Form::free && solved->period > 1) {
         orbit::Orbit free;
         free.map.stop = flow::StopMode::off;
@@ -214,6 +237,7 @@ std::optional<Corner> leave_contact(const flow::ParameterFamily& family, Piece& 
         free.state = solved->state;
         corner.shorter_period = orbit::minimal_period(system, free) < solved->period;
     }
+    // On the other side the contact that has left would be met again.
     const auto direction = real_side(family, *solved, grazing.parameter, options, piece.slope() < 0.0 ? -1.0 : 1.0);
     if (!direction) { return std::nullopt; }
     corner.in_front = std::move(*near);

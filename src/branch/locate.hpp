@@ -31,6 +31,8 @@ std::vector<BoundaryPoint> boundaries_between(const flow::ParameterFamily& famil
 struct Place {
     double share = 0.0;
     double aside = 0.0;
+    // The arc of a step turns by 0.35 rad at most and departs from its chord by 0.04 of the length: limits as wide as
+    // these tell another part of the curve from this one, and let a boundary at an end of the step pass.
     [[nodiscard]] bool between() const { return share > -0.1 && share < 1.1 && aside < 0.5; }
 };
 Place place_of(const numerics::Vector& u, const numerics::Vector& a, const numerics::Vector& b);

@@ -23,6 +23,9 @@ public:
           start_(start),
           equations_(family, start.kind, start.point.motion, start.contact, options.size),
           walker_([this](const Vector& u, Vector& f, Matrix& j) { return evaluate(u, f, j); },
+                  // Steps as long as those of a branch (StepOptions). Test rows have differences in their Jacobian,
+                  // good to some 1e-8: a last step of 1e-6 leaves little beside it. Points at values that are asked for
+                  // are refined by solve_critical.
                   {.first_step = 0.02,
                    .largest_step = 0.25,
                    .largest_parameter_step = 0.1,
@@ -73,6 +76,7 @@ private:
         if (!walker_.advance()) { return lose("the step length collapsed"); }
         const Vector& u = walker_.point();
         const orbit::Motion motion = equations_.motion(u);
+        // Beyond the speed of zero the equations still have solutions, but no motion is one of them.
         if (start_.kind != Kind::grazing && contact_leaving(motion)) {
             // Near grazing the speed is tiny beside everything else: the step may only have been too long.
             if (walker_.step() > shortest_step && walker_.retreat()) { return; }
@@ -107,6 +111,7 @@ private:
         double f_high = slope;
         Vector u = walker_.point();
         Vector tangent = walker_.tangent();
+        // The bracket's one end may stay for long under the secant method: every third time it is halved instead.
         for (int iteration = 0; iteration < 30 && high - low > 1e-9; ++iteration) {
             double at = low - f_low * (high - low) / (f_high - f_low);
             if (iteration % 3 == 2) { at = 0.5 * (low + high); }
@@ -123,6 +128,8 @@ private:
         }
         const std::vector<double> p = equations_.parameters(u);
         const bool omega_turns = tangent_before[last - 1] * walker_.tangent()[last - 1] < 0.0;
+        // Located to 1e-9 along the arc, a cusp leaves the frequency's slope far below 1e-4; at another turn of the
+        // value nothing makes it small.
         locus_.turns.push_back(
             {p[0], p[1], start_.kind == Kind::fold && omega_turns && std::abs(tangent[last - 1]) < 1e-4});
     }
@@ -134,6 +141,7 @@ private:
         for (double value : options_.exact) {
             if ((value - va) * (value - vb) < 0.0) { passed.push_back(value); }
         }
+        // In the order in which the step passed them.
         std::sort(passed.begin(), passed.end(), [&](double x, double y) { return (x < y) == (va < vb); });
         for (double value : passed) { add_at(a, b, value); }
     }
@@ -144,6 +152,7 @@ private:
         const double va = equations_.parameters(a)[1];
         const double vb = equations_.parameters(b)[1];
         const Vector guess = a + (value - va) / (vb - va) * (b - a);
+        // The family with its second parameter held at the value.
         flow::ParameterFamily by_omega;
         by_omega.base = family_.base;
         by_omega.units = {family_.units.front()};
@@ -177,10 +186,13 @@ private:
         const flow::ParameterFamily fixed = flow::along_frequency(
             family_.base.with(family_.parameters(std::array<double, 2>{omega, value})), family_.units.front());
         const Look seen = look(fixed, motion, omega);
+        // A grazing contact that is the only one exerts no force; what the hybrid flow meets in it is rounding.
         const double force = start_.kind == Kind::grazing && motion.contacts() == 1 ? 0.0 : seen.point.peak_force;
         locus_.points.push_back({omega, value, force, angle, motion});
     }
 
+    /// In scaled unknowns. Folds stand close to grazing (at an entry speed of 8.4e-5 for the paper's defaults): steps
+    /// must become shorter than that before the curve is said to end there.
     static constexpr double shortest_step = 1e-7;
 
     const flow::ParameterFamily& family_;

@@ -10,6 +10,8 @@ Piece::Piece(const flow::ParameterFamily& family, Motion like, double size, cons
     : family_(family),
       like_(std::move(like)),
       walker_([this](const Vector& u, Vector& f, Matrix& j) { return evaluate(u, f, j); },
+              // 1e-7 is below the 1e-6 within which look() wants a motion to close. More is not asked of the points
+              // between boundaries, which are refined by equations of their own.
               {.first_step = options.first_step,
                .largest_step = options.largest_step,
                .largest_parameter_step = options.largest_parameter_step,
@@ -56,12 +58,14 @@ bool Piece::start(const Motion& motion, double parameter, double direction) {
 
 bool Piece::start_with_speed(const Motion& motion, double parameter, int contact) {
     Vector direction = Vector::Zero(units_.size());
+    // At grazing the parameter is stationary in the speed and says nothing of the way to go.
     direction[contact * like_.sequence.unknowns_per_contact(family_.base)] = 1.0;
     return walker_.start_along(scaled(motion, parameter), direction);
 }
 
 bool Piece::start_off(const Motion& motion, double parameter, const Vector& direction, double distance) {
     Vector along = Vector::Zero(units_.size());
+    // The parameter has no part in it: from a flip it moves with the square of the distance.
     along.head(direction.size()) = direction.normalized();
     return walker_.start_along(scaled(motion, parameter) + distance * along, along);
 }

@@ -12,6 +12,7 @@ using numerics::Vector;
 using orbit::Form;
 using orbit::Motion;
 
+/// The same motion as one of twice the period: its contacts, and again one period later.
 Motion doubled(const Motion& motion) {
     Motion twice = motion;
     twice.period = 2 * motion.period;
@@ -44,11 +45,15 @@ std::optional<Departure> departure_at_flip(const flow::ParameterFamily& family, 
     const auto r = orbit::shoot(system, motion, {});
     if (!r) { return std::nullopt; }
     const Vector units = orbit::unit_of_unknowns(family.base, motion, size);
+    // The Floquet mode of multiplier -1 is the null vector of A(-1) = F_z - 2 F_closing (boundary/critical.hpp), in
+    // scaled unknowns; by singular values, as A is singular to rounding only.
     const Matrix a = (r->by_unknowns - 2.0 * r->by_closing) * units.asDiagonal();
     const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullV);
     const Vector mode = svd.matrixV().col(a.cols() - 1);
     Departure departure;
     departure.parameter = flip.point.parameter;
+    // Multiplier -1 of the half-cycle map, mirror image included: the motions that leave have lost the symmetry but
+    // repeat after one cycle as before.
     if (motion.mirrored) {
         departure.motion = motion;
         departure.motion.mirrored = false;
@@ -58,6 +63,7 @@ std::optional<Departure> departure_at_flip(const flow::ParameterFamily& family, 
     departure.motion = doubled(motion);
     departure.off = mode;
     if (motion.form == Form::sequence) {
+        // The mode changes sign from one period to the next.
         departure.off.resize(2 * mode.size());
         departure.off << mode, -mode;
     }
@@ -86,6 +92,7 @@ bool passes_through(const flow::ParameterFamily& family, const Branch& branch, c
     for (std::size_t i = 0; i + 1 < way.size(); ++i) {
         const Point& a = *way[i];
         const Point& b = *way[i + 1];
+        // A branch may pass the parameter several times: every pair of neighbours around it is tried.
         if ((a.parameter - p) * (b.parameter - p) > 0.0) { continue; }
         if (a.motion.form != b.motion.form || a.motion.contacts() != b.motion.contacts()) {
             // Around a grazing point: either form, from its own side.
@@ -93,6 +100,7 @@ bool passes_through(const flow::ParameterFamily& family, const Branch& branch, c
             continue;
         }
         const double between = b.parameter - a.parameter;
+        // Between two points of one form Newton's method starts from an interpolation.
         const double share = between != 0.0 ? (p - a.parameter) / between : 0.0;
         const Vector from = orbit::pack(family.base, a.motion);
         const Vector to = orbit::pack(family.base, b.motion);

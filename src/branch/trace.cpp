@@ -72,12 +72,15 @@ private:
     void step() {
         if (!piece_->advance()) { return change_form("the step length collapsed"); }
         ++branch_.solves;
+        // A speed below zero comes first: the equations have that solution, the flow has not, and what it meets instead
+        // would be taken for other contacts.
         const Motion motion = piece_->motion();
         if (const auto leaving = contact_leaving(motion)) { return leave(*leaving); }
         Look seen = look(family_, motion, piece_->parameter());
         if (seen.status == Look::Status::flow_failed) { return try_shorter("the motion could not be integrated"); }
         const std::size_t met = seen.point.contacts.size();
         const std::size_t expected = motion.contacts();
+        // The strobed form assumes no contacts: whatever it meets is right.
         if (motion.form != Form::strobed && met > expected) { return enter(seen.point); }
         if (!seen.ok() || (motion.form != Form::strobed && met != expected)) {
             return try_shorter("the contacts of the motion changed in a way that could not be followed");
@@ -86,6 +89,8 @@ private:
     }
 
     void accept(CurvePoint here) {
+        // Before anything is noted of it: behind the junction the motion is one of half the period, and its boundaries
+        // belong to that branch.
         if (joins(last_, here)) {
             branch_.end = End::joined;
             return;
@@ -121,6 +126,7 @@ private:
     void end_at(double parameter) {
         branch_.end = End::range;
         if (branch_.points.size() < 2) { return; }
+        // From the point just beyond. Where Newton's method fails, as it may behind a fold, that point stays the last.
         const auto there = orbit::solve(family_.at(parameter), last_.point.motion);
         ++branch_.solves;
         if (!there) { return; }
@@ -139,6 +145,7 @@ private:
     }
 
     void enter(const Point& seen) {
+        // Contacts are taken in one at a time, in the order in which they begin: a shorter step keeps them apart.
         if (seen.contacts.size() > seen.motion.contacts() + 1 && piece_->step() > shortest_step && piece_->retreat()) {
             return;
         }
@@ -213,12 +220,14 @@ private:
         const Motion motion = orbit::motion_of(family_.base, orbit);
         if (motion.form == Form::strobed) { return; }
         const Look seen = look(family_, motion, last_.point.parameter);
+        // Only where the sequence has the contacts that the flow meets; else a few more points are strobed.
         if (seen.ok() && seen.point.contacts.size() == motion.contacts()) {
             restart(motion, "the motion could not be followed with its new contacts");
         }
     }
 
     void restart(const Motion& motion, const char* reason) {
+        // The branch goes on in the parameter's direction: unknowns of different forms have no tangent in common.
         const double direction = last_.slope;
         renew_piece(motion);
         if (!piece_->start(motion, last_.point.parameter, direction) || !take_current()) { return lose(reason); }
@@ -241,6 +250,8 @@ private:
     /// Whether both halves of a motion of even period have become the same, or changed places, during the step.
     [[nodiscard]] bool joins(const CurvePoint& a, const CurvePoint& b) const {
         const Motion& motion = b.point.motion;
+        // Just off the flip that it sets out from both halves are nearly the same as well: not to be asked of the first
+        // points.
         if (motion.form != Form::sequence || branch_.period % 2 != 0 || motion.contacts() % 2 != 0 ||
             a.u.size() != b.u.size() || branch_.points.size() < 2) {
             return false;
@@ -253,12 +264,15 @@ private:
             before[at] += std::numbers::pi * branch_.period;
             now[at] += std::numbers::pi * branch_.period;
         }
+        // 1e-7 is what the points are solved to.
         return before.dot(now) <= 0.0 || now.norm() < 1e-7;
     }
 
     /// Whether the last step passed the first point again, in the same direction.
     [[nodiscard]] bool closes() {
         const auto& points = branch_.points;
+        // The first points are near the first one without having come back. A closed curve without corners turns by 360
+        // degrees, in steps of 20 at most: it is longer than that.
         if (points.size() < 8) { return false; }
         return near_first(points[points.size() - 2], points.back()) &&
                passes_first(points[points.size() - 2], points.back());
@@ -274,6 +288,8 @@ private:
                             std::abs(b.x_min - first.x_min) / options_.size +
                             std::abs(b.peak_force - first.peak_force) / (1.0 + first.peak_force);
         const double way_there = branch_.points[1].parameter - first.parameter;
+        // With the first point on the step it is no further away than the step is long, but for the bend; half of that
+        // again is for it. The multiplier must be between those of the ends in the same rough sense.
         return away <= 1.5 * length && b.contacts.size() == first.contacts.size() &&
                (b.parameter - a.parameter) * way_there > 0.0 && a.motion.form == b.motion.form &&
                std::abs(b.max_multiplier() - first.max_multiplier()) <
@@ -301,6 +317,7 @@ private:
     void close() {
         auto& points = branch_.points;
         const double way_there = points[1].parameter - points[0].parameter;
+        // A last point beyond the first is on the way that was gone at the beginning.
         const bool passed = (points.back().parameter - points[0].parameter) * way_there >= 0.0;
         if (passed) { points.pop_back(); }
         points.push_back(Point(points.front()));
@@ -352,8 +369,11 @@ Branch trace_both_ways(const flow::ParameterFamily& family, const Departure& dep
     Departure back = departure;
     back.direction = -departure.direction;
     Branch joined = trace(family, back, options);
+    // An isola was met whole.
     if (joined.end == End::closed) { return joined; }
     Branch forth = trace(family, departure, options);
+    // The way back is turned round: what lay after a point then lies after its other neighbour. Both ways begin with
+    // the same point, which is kept once.
     const std::size_t shift = joined.points.empty() ? 0 : joined.points.size() - 1;
     std::reverse(joined.points.begin(), joined.points.end());
     std::reverse(joined.boundaries.begin(), joined.boundaries.end());
