@@ -26,6 +26,7 @@ constexpr numerics::NewtonOptions sequence_newton{.max_iterations = 20,
                                                   .max_step = numerics::unlimited,
                                                   .residual_is_relative = false};
 
+/// On the stop, with the speed and the other states of the contact.
 flow::State entry_state(const flow::System& system, const ContactUnknowns& contact) {
     flow::State y{};
     y[0] = system.stop_position();

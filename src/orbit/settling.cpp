@@ -137,6 +137,7 @@ void check(const SettlingOptions& options) {
     if (options.max_cycles < 1) { throw std::invalid_argument("settling max_cycles: allowed is at least 1"); }
 }
 
+/// So many drive cycles from phase 0, with the limits of the options for each.
 flow::Request cycles_from(const flow::State& state, int cycles, const SettlingOptions& options) {
     flow::Request request;
     request.state = state;
