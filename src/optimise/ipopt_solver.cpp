@@ -147,7 +147,8 @@ void configure(Ipopt::OptionsList& list, const Options& options, const Limits& l
     // More pairs than there are variables (ten or so): the model can hold the whole curvature.
     list.SetIntegerValue("limited_memory_max_history", 12);
     list.SetStringValue("nlp_scaling_method", "none");  // the caller has scaled
-    // By default Ipopt moves the bounds outwards by 1e-8 and evaluates there, where designs may not exist.
+    // By default Ipopt moves the bounds outwards by 1e-8 and evaluates there, where points are clipped to the bounds
+    // and gradients belong to other points than it thinks.
     list.SetNumericValue("bound_relax_factor", 0.0);
     list.SetStringValue("honor_original_bounds", "yes");
     list.SetNumericValue("tol", options.tolerance);
