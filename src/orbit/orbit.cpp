@@ -46,8 +46,8 @@ Orbit find_orbit(const flow::System& system, const ReturnMap& map, const flow::S
 }
 
 numerics::SmallComplexVector multipliers(const Orbit& orbit) {
-    // The map of a whole period is the mirrored half-cycle map applied twice.
     numerics::SmallComplexVector values = orbit.monodromy.eigenvalues();
+    // The map of a whole period is the mirrored half-cycle map applied twice.
     if (orbit.map.mirrored) { values = values.array().square().matrix().eval(); }
     std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) {
         const double na = std::abs(a);

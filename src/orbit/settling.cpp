@@ -49,8 +49,8 @@ struct Distance {
     double contraction = absent;
 };
 
-/// |(I - M)^-1 (P(y) - y)| relative to 1 + |y|, nondimensional, with P the map of p cycles and M its derivative at y.
-/// Both absent when the flow failed.
+/// error: |(I - M)^-1 (P(y) - y)| relative to 1 + |y|, nondimensional, with P the map of p cycles and M its derivative
+/// at y; contraction: the spectral radius of M. Both absent when the flow failed.
 Distance distance_from_orbit(const flow::System& system, const flow::State& state, int p) {
     ReturnMap map;
     map.period = p;
