@@ -19,6 +19,7 @@ using boundary::Kind;
 constexpr int places = 6;        ///< frequencies looked at on either side
 constexpr int places_again = 2;  ///< between the operating point and an end that starts have moved
 /// The branch is followed within these multiples of the operating frequency.
+/// Ends further off are not looked for.
 constexpr double range_below = 0.3;
 constexpr double range_above = 3.0;
 
@@ -50,6 +51,7 @@ private:
     void follow_branch() {
         const flow::ParameterFamily family = frequency_family(c_.system);
         const double omega = c_.system.omega();
+        // Each way by itself; only the first end counts, since beyond it the motion is unstable or another one.
         for (const bool up : {false, true}) {
             branch::TraceOptions options;
             options.from = omega * range_below;
@@ -71,6 +73,7 @@ private:
     static bool ends_band(const branch::Branch& traced, const branch::BoundaryPoint& found) {
         if (found.kind != Kind::grazing) { return true; }
         const std::size_t behind = found.after + 1;
+        // Nothing is known behind it: an end, rather than a promise that the band goes on.
         if (behind >= traced.points.size()) { return true; }
         return !traced.points[behind].stable() || traced.points[behind].contacts.empty();
     }
@@ -79,6 +82,8 @@ private:
              const std::string& reason) const {
         const flow::System there = c_.system.at_omega(omega);
         const flow::ParameterFamily family = frequency_family(there);
+        // Again, for the derivatives along the keys, which a branch does not carry. Where that fails the frequency
+        // stands as it was found, without a gradient.
         const auto exact = boundary::solve_critical(family, kind, motion, omega, contact, angle, motion_size(c_.system),
                                                     c_.directions);
         end.found = true;
@@ -88,6 +93,7 @@ private:
         end.reason = reason;
     }
 
+    /// Above the edge the motion clear of the stop is stable too: the tuned one is no longer alone.
     void meet_free_motion() {
         const bool nearer =
             c_.edge_omega > c_.system.omega() && (!band_.upper.found || c_.edge_omega < band_.upper.omega);
@@ -104,6 +110,8 @@ private:
         if (!end.found) { return; }
         const double omega = c_.system.omega();
         double clear = omega;  // up to here nothing was found
+        // From the operating point outwards, so that the first counterexample is the nearest one. It moves the end
+        // inwards and with it the spacing: once more, over the shorter band.
         for (int count = places; count > 0;) {
             const double far = end.omega;
             bool moved = false;
@@ -132,6 +140,7 @@ private:
         options.max_cycles = c_.sampling->cycles;
         const orbit::Orbit tuned = orbit::polish_orbit(exact, orbit::state_at_zero(exact, *here), here->map.period);
         if (!tuned.ok() || !(orbit::max_multiplier(tuned) < 1.0)) { return false; }
+        // 0: the box takes its size from the gap alone, since the amplitude at this frequency has not been measured.
         const auto answer = attractor::refute({exact, scout}, tuned, attractor::ensemble_box(exact, 0.0), options);
         band_.starts += answer.starts;
         if (answer.status == Status::cancelled || answer.status == Status::budget_spent) { cut_short_ = true; }
@@ -139,6 +148,7 @@ private:
         const bool below = at < c_.system.omega();
         const bool periodic = answer.other->kind == attractor::Kind::periodic;
         end.found = true;
+        // Until the window is known: somewhere between the last place without and the first with a counterexample.
         end.omega = 0.5 * (clear + at);
         end.error = 0.5 * std::abs(clear - at);
         end.d_omega.clear();
@@ -146,6 +156,8 @@ private:
         if (!periodic) { return true; }
         const Intruder intruder = find_window(exact, design_, answer.other->orbit);
         const WindowEnd& near = below ? intruder.highest : intruder.lowest;
+        // A window that reaches over a place where no start met its motion contradicts what was seen (its motion may be
+        // unstable there, or its basin small): the bracket stays.
         const bool usable = intruder.ok && (below ? near.omega <= clear : near.omega >= clear);
         if (usable) {
             set(end, near.kind, near.motion, near.contact, near.angle, near.omega, "window of " + end.reason);

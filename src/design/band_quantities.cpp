@@ -39,6 +39,7 @@ std::vector<flow::ParameterVector> directions_at_fixed_frequency(const BandReque
 void report_end(const BandRequest& r, Quantity q, const BandEnd& end, Evaluation& evaluation) {
     if (!end.found) { return; }
     const auto at = static_cast<std::size_t>(q);
+    // f = omega/(2 pi T), so df = (d omega - omega dT/T)/(2 pi T), T the scale of time.
     const double per_omega = 1.0 / (2.0 * std::numbers::pi * r.scales.time);
     evaluation.quantities[at] = end.omega * per_omega;
     if (r.demand.error_estimates) { evaluation.error_estimates[at] = end.error * per_omega; }
@@ -60,6 +61,7 @@ bool wants_band(const Demand& demand) {
 void measure_band(const BandRequest& r, Evaluation& evaluation) {
     const Edge edge = edge_of(r);
     const std::vector<flow::ParameterVector> directions = directions_at_fixed_frequency(r);
+    // The band is searched by as much evidence as the verdict at the operating point rests on.
     const bool sample = r.problem.single_stable > SingleStable::orbit;
     const Band band = single_stable_band({r.operation.system, r.operation.scout, r.orbit, edge.omega, edge.d_omega,
                                           directions, sample ? &r.problem.sampling : nullptr},

@@ -139,6 +139,8 @@ private:
                 system, from_user(*start, "orbit.start", *actuator_.type, scaled_.scales, system.states()), period);
         }
         Reached reached = reach_from_rest(system, period);
+        // A motion of n cycles has n strobe points, and which one the transient ends on is chance: the report always
+        // gives the same.
         if (reached.orbit.ok()) { reached.orbit = orbit::start_with_longest_flight(system, reached.orbit); }
         return reached;
     }
@@ -169,6 +171,7 @@ private:
         const boundary::Boundary again =
             boundary::solve_boundary(with(integrators_.tighter), boundary::FreeBranch::map_of(operation.system),
                                      edge.kind, edge.state, edge.omega, {});
+        // Frequencies of both tolerances may agree to the last bit by chance: two roundings of omega are added.
         const double moved = again.ok() ? std::abs(again.omega - edge.omega) : absent;
         return (1.0 - problem_.margin) * (moved + 4e-16 * edge.omega);
     }
@@ -189,6 +192,7 @@ private:
         if (period == orbit.map.period) { return orbit; }
         orbit::ReturnMap map = orbit.map;
         map.period = period;
+        // Over the longer map the multipliers would be powers, and contacts and integrals counted several times.
         const orbit::Orbit shorter = orbit::find_orbit(system, map, orbit.state);
         return shorter.ok() ? shorter : orbit;
     }
@@ -204,6 +208,7 @@ private:
             report.x_max = scaled_.scales.length * observed[orbit::x_max].value;
             report.x_min = scaled_.scales.length * observed[orbit::x_min].value;
         }
+        // The matrix that Newton's method left has shorter series; the portrait's has full ones.
         orbit::Orbit exact = orbit;
         exact.monodromy = measurement.portrait.monodromy;
         const auto values = orbit::multipliers(exact);
@@ -213,6 +218,7 @@ private:
     void require_impact(const Operation& operation, const Reached& reached) {
         if (!operation.system.integrator->info().has_stop) { return; }
         if (operation.edge) {
+            // Only if nothing else was reached either: an unstable impacting orbit is reported as such.
             if (reached.kind != Reached::Kind::unsettled || reached.orbit.ok() || !reached.settled_clear) { return; }
             result_.reason = "at the operating frequency, the margin below the edge, the motion settles clear of the "
                              "stop again: the impact band is narrower than the margin";
@@ -226,6 +232,7 @@ private:
     // ---- what stands beside it
 
     [[nodiscard]] bool must_be_alone() const { return problem_.single_stable != SingleStable::off; }
+    /// Only an answer that stands is judged: a stable motion, a stop to strike, and limits that are not spent.
     [[nodiscard]] bool goes_on(const Operation& operation) const {
         return result_.status == EvaluationStatus::ok && operation.system.integrator->info().has_stop && !cut_short();
     }

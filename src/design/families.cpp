@@ -27,6 +27,7 @@ void require_key(const Specification& spec, Key key) {
 }  // namespace
 
 double motion_size(const flow::System& system) {
+    // A stop that touches or presses at rest leaves no gap to measure by: 1e-3 keeps the unit positive.
     return std::max(system.stop_position() - system.integrator->rest_state(system.parameters)[0], 1e-3);
 }
 

@@ -36,6 +36,7 @@ std::string integrator_in_use(const Problem& problem) {
 
 Integrators make_integrators(const Problem& problem) {
     const double tolerance = problem.solver.tolerance;
+    // Below 1e-16 a tolerance asks for less than rounding. A scout tighter than the problem itself would be of no use.
     return {make_integrator(problem, tolerance), make_integrator(problem, std::max(1e-16, 1e-2 * tolerance)),
             make_integrator(problem, std::max(scout_tolerance, tolerance))};
 }

@@ -8,6 +8,7 @@
 namespace percuss::design {
 namespace {
 
+/// Half the stroke, nondimensional.
 double amplitude_of(const flow::System& system, const orbit::Orbit& orbit) {
     const orbit::Image image =
         orbit::apply(system, orbit.map, orbit.state, orbit::Differentiate::nothing, {}, flow::observe_extrema);
@@ -22,6 +23,7 @@ Judgement judge(const JudgedCase& c) {
     TierOne first =
         check_tier_one({operation.system, c.scales, c.orbit, free, operation.fold ? &*operation.fold : nullptr,
                         operation.point.fold_offset, c.problem.margin});
+    // The cheap check first: where it refutes, no start is needed.
     const bool by_starts = c.problem.single_stable > SingleStable::orbit;
     if (!by_starts || first.uniqueness.verdict == Verdict::not_unique) {
         return {std::move(first.uniqueness), std::move(first.rejection)};

@@ -24,6 +24,7 @@ struct Proportional {
     bool per_time = false;  ///< the observable is an integral over time, the quantity its mean over the period
 };
 
+/// The rule of a quantity that is one observable times a scale; nothing for the others.
 std::optional<Proportional> proportional(Quantity quantity) {
     constexpr model::ScalePowers force = {0, 0, 1, {}};
     static constexpr std::array<std::pair<Quantity, Proportional>, 6> table = {{
@@ -62,6 +63,8 @@ public:
         }
         mu_ = solver.eigenvalues()[leading];
         right_ = solver.eigenvectors().col(leading);
+        // The row of the inverse is the left eigenvector with w^T v = 1, as the perturbation of a simple eigenvalue
+        // wants it. Where two multipliers coincide there is no derivative and any choice is arbitrary.
         left_ = solver.eigenvectors().inverse().row(leading).transpose();
     }
     [[nodiscard]] double value() const { return std::abs(mu_); }
@@ -74,27 +77,35 @@ public:
         if (!image.ok()) { return absent; }
         const Eigen::MatrixXd difference = Eigen::MatrixXd(image.derivative) - Eigen::MatrixXd(portrait_.monodromy);
         const double moved = std::abs((left_.transpose() * difference * right_)(0));
+        // An eigenvalue moves by the rounding of the matrix times its condition number |w| |v|.
         const double rounding = 1e-15 * portrait_.monodromy.norm() * left_.norm() * right_.norm();
         return moved + rounding;
     }
 
     [[nodiscard]] double along(const flow::ParameterVector& direction, int column) const {
+        // The largest change that a unit step along the key makes, of the state (of order one) or relative of any
+        // parameter; parameters near zero (a voltage off, no damping) count in units of 1e-3.
         double size = portrait_.d_state.col(column).norm();
         for (std::size_t k = 0; k < direction.size(); ++k) {
             const double p = std::abs(system_.parameters[k]);
             size = std::max(size, std::abs(direction[k]) / std::max(p, 1e-3));
         }
         if (!(size > 0.0)) { return 0.0; }
+        // Relative changes of 1e-5: the truncation of the central difference, h^2, and rounding over h are then both
+        // about 1e-10.
         const double h = 1e-5 / size;
         Eigen::MatrixXd forward;
         Eigen::MatrixXd backward;
         if (!monodromy(direction, column, h, forward) || !monodromy(direction, column, -h, backward)) { return absent; }
         const Eigen::MatrixXd dm = (forward - backward) / (2.0 * h);
         const std::complex<double> dmu = (left_.transpose() * dm * right_)(0);
+        // d|mu| = Re(conj(mu) dmu)/|mu|.
         return (std::conj(mu_) * dmu).real() / std::abs(mu_);
     }
 
 private:
+    /// The monodromy matrix with the parameters moved by h along the key and the state as the orbit follows them to
+    /// first order; false when the flow failed.
     bool monodromy(const flow::ParameterVector& direction, int column, double h, Eigen::MatrixXd& m) const {
         flow::System moved = system_;
         for (std::size_t k = 0; k < direction.size(); ++k) { moved.parameters[k] += h * direction[k]; }
@@ -150,6 +161,7 @@ void measure_proportional(const Context& c, Quantity q, const Proportional& rule
     c.set(q, scale * value, scale * c.observed_error(rule.observable));
     auto& gradient = c.gradient(q);
     for (std::size_t i = 0; i < c.keys.size(); ++i) {
+        // d(scale value) = scale d(value) + d(scale) value: a key moves the orbit and the unit that it is measured in.
         gradient[i] = scale * c.portrait.total(rule.observable, static_cast<int>(i)) +
                       model::scale_derivative(rule.scale, c.scales, c.keys[i].scales) * value;
     }
@@ -163,6 +175,7 @@ void measure_proportional(const Context& c, Quantity q, const Proportional& rule
     c.set(q, scale * value * per_tau, scale * c.observed_error(rule.observable) * per_tau);
 }
 
+/// (x_max - x_min)/2; both extrema by the envelope theorem.
 void measure_amplitude(const Context& c) {
     const auto& observed = c.portrait.image.observed;
     const double value = 0.5 * (observed[orbit::x_max].value - observed[orbit::x_min].value);
@@ -177,6 +190,7 @@ void measure_amplitude(const Context& c) {
     }
 }
 
+/// Of f = omega/(2 pi T) by key i, T the scale of time.
 double frequency_derivative(const Context& c, std::size_t i) {
     const double t = c.scales.time;
     const std::size_t omega = index(c.system.integrator->info().omega);
@@ -218,6 +232,7 @@ Measurement measure(const flow::System& system, const flow::System* tighter, con
     std::vector<flow::ParameterVector> directions;
     for (const KeyDirection& key : keys) { directions.push_back(key.parameters); }
     const bool with_errors = demand.error_estimates && tighter != nullptr;
+    // One more direction: what an uncertain operating frequency does to every quantity.
     if (with_errors) { directions.push_back(orbit::unit_direction(system.integrator->info().omega)); }
     measurement.portrait = orbit::portray(system, orbit, directions, mask);
     if (!measurement.portrait.ok()) { return measurement; }

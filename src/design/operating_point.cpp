@@ -12,6 +12,7 @@ namespace {
 /// Free orbits are looked for down to this share of the operating frequency: past it the free branch must have been
 /// followed for all its orbits at the frequency itself to be known, since a softening branch turns back up at a fold
 /// below.
+/// A softening tip that lies further below is missed.
 constexpr double followed_past = 0.93;
 
 EdgeKind to_edge_kind(boundary::Kind kind) {
@@ -40,6 +41,7 @@ void drive_at(double omega, const DrivenDesign& design, Operation& operation) {
     operation.point.drive_frequency = drive_frequency(omega, design.scaled.scales);
 }
 
+/// At a frequency that was given (omega, nondimensional): nothing to look for.
 Operation operate_at(double omega, const DrivenDesign& design) {
     Operation operation;
     operation.status = OperationStatus::found;
@@ -52,12 +54,14 @@ Operation operate_at(double omega, const DrivenDesign& design) {
 /// the margin is smaller than that.
 double range_of_fold(double margin) { return std::max(2.0 * margin, 0.02); }
 
+/// Relative distance from the edge down to the fold; 0 where both are one, absent where none was located.
 double offset_of(const boundary::GrazingFold& fold) {
     using Status = boundary::GrazingFold::Status;
     return fold.status == Status::found ? fold.offset : fold.status == Status::at_once ? 0.0 : absent;
 }
 
 void find_neighbours(const DrivenDesign& design, double margin, boundary::FreeBranch& branch, Operation& operation) {
+    // Only at a grazing does an impacting branch begin; the fold looked for lies on it.
     if (operation.edge->kind == boundary::Kind::grazing) {
         operation.fold = boundary::find_fold_beside(design.system, *operation.edge, range_of_fold(margin));
         operation.point.fold_offset = offset_of(*operation.fold);
@@ -94,6 +98,7 @@ Reached reach_below_edge(const Operation& operation) {
     const flow::System& system = operation.system;
     const double omega = system.omega();
     const double start = std::min(omega, edge.omega * (1.0 - clear_of_edge));
+    // From the grazing state, as the device itself falls when its frequency comes down past the edge.
     Reached reached = reach_orbit(system.at_omega(start), edge.state, 1, true);
     if (start == omega || !reached.orbit.ok()) { return reached; }
     auto moved = continue_orbit(system.at_omega(start), reached.orbit, omega);

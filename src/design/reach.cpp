@@ -18,6 +18,7 @@ using orbit::Orbit;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
+/// An orbit that was found, and strikes where it must.
 bool counts(const Orbit& orbit, bool must_strike) { return orbit.ok() && !(must_strike && orbit.contacts.empty()); }
 
 /// Random starts tried for an orbit of a longer period than the motion from rest has.
@@ -31,6 +32,8 @@ constexpr double smallest_size = 0.05;
 /// of the gap, internal states near rest.
 flow::State random_start(const flow::System& system, double gap, std::mt19937_64& generator) {
     const auto uniform = [&](double low, double high) {
+        // 53 bits by hand: standard distributions differ between libraries, and the same problem must give the same
+        // digits.
         return low + (high - low) * static_cast<double>(generator() >> 11U) * 0x1.0p-53;
     };
     const double size = std::max(gap, smallest_size);
@@ -89,6 +92,7 @@ public:
             const auto next = orbit::settle(system_, state_, 1);
             if (!next) { return lost(); }
             state_ = *next;
+            // Asked every cycle: between two tries of Newton's method the motion may come to the orbit proposed before.
             if (is_captured()) { return captured(); }
             if (cycle == next_try) {
                 propose();
@@ -112,6 +116,8 @@ private:
             unstable_ = std::move(found);
             return;
         }
+        // The same orbit proposed again keeps its trap and what the watch has seen; 1e-6 of its scale is above what
+        // Newton's method leaves.
         const bool known = proposal_ && proposal_->trap.distance(orbit::state_at_zero(system_, found)) < 1e-6;
         if (known) { return; }
         proposal_.emplace(system_, std::move(found));
@@ -195,6 +201,8 @@ Reached reach_from_rest(const flow::System& system, int period) {
     const auto fits = [&](const Reached& r) {
         return r.kind == Reached::Kind::stable && orbit::minimal_period(system, r.orbit) == period;
     };
+    // Whatever contracts to a map of one cycle has period 1. For more cycles the orbit from rest may be of a divisor:
+    // then other starts are tried.
     if (period == 1 || fits(reached)) { return reached; }
     std::mt19937_64 generator(1);
     const double gap = std::abs(system.stop_position() - system.integrator->rest_state(system.parameters)[0]);
@@ -245,6 +253,8 @@ std::optional<Orbit> continue_orbit(const flow::System& system, const Orbit& sta
     while (omega != to_omega) {
         const double target = std::abs(to_omega - omega) <= std::abs(step) ? to_omega : omega + step;
         const Orbit next = orbit::find_orbit(system.at_omega(target), current.map, current.state);
+        // Newton's method may land on another orbit; one with other contacts cannot be the same without a grazing in
+        // between.
         const bool same = next.ok() && next.contacts.size() == current.contacts.size();
         if (same) {
             current = next;

@@ -11,10 +11,13 @@ namespace percuss::design {
 namespace {
 
 /// States nearer than this, nondimensional, are of the same orbit.
+/// Orbits come out of Newton's method to 1e-9 or better.
 constexpr double same_orbit = 1e-6;
 
 /// Half the stroke of a free motion; NaN where it cannot be followed.
 double free_amplitude(const flow::System& system, const boundary::FreePoint& p) {
+    // By symmetry the largest displacement from the centre is half the stroke, and the clearance is what it leaves of
+    // the gap.
     if (system.symmetric()) {
         return p.clearance + system.stop_position() - system.integrator->centre(system.parameters);
     }
@@ -30,10 +33,12 @@ Attractor free_attractor(const UniquenessCase& c, const boundary::FreePoint& p) 
     other.state = to_user(p.state, c.scales, c.system.states());
     other.peak_force = 0.0;
     other.amplitude = c.scales.length * free_amplitude(c.system, p);
+    // Of a symmetric motion the radius belongs to the half-cycle map.
     other.max_multiplier = c.system.symmetric() ? p.radius * p.radius : p.radius;
     return other;
 }
 
+/// In the units of the problem; `at_zero` is the state of `found` at theta = 0.
 Attractor struck_attractor(const UniquenessCase& c, const orbit::Orbit& found, const flow::State& at_zero) {
     const orbit::Image image = orbit::apply(c.system, found.map, found.state, orbit::Differentiate::nothing, {},
                                             flow::observe_extrema | flow::observe_force);
@@ -86,6 +91,9 @@ TierOne check_tier_one(const UniquenessCase& c) {
         if (p.clearance < 0.0 && p.stable()) { u.attractors.push_back(free_attractor(c, p)); }
     }
     if (u.attractors.empty()) {
+        // Where no fold is located less is known of the impacting branches, and two more starts are tried:
+        // problems/soft-impact.ini with cubic 0.1, force 3 has two impacting orbits and passed for unique before there
+        // were starts.
         u.starts = located ? 1 : 3;
         if (const auto other = refute_by_starts(c, static_cast<int>(u.starts))) { u.attractors.push_back(*other); }
     }
@@ -95,6 +103,8 @@ TierOne check_tier_one(const UniquenessCase& c) {
         result.rejection = clear ? "a stable motion clear of the stop coexists at the operating frequency"
                                  : "another stable motion that strikes coexists at the operating frequency";
     } else if (located && !(c.fold_offset <= c.margin)) {
+        // Between the fold and the edge the free motion goes on as a stable one of slow impacts, beside the tuned
+        // orbit.
         result.rejection = "the fold beside the edge lies further below it than the margin";
     }
     if (!result.rejection.empty()) {

@@ -19,8 +19,11 @@ using model::Specification;
 /// The branch is followed within these multiples of the frequency where the motion was met.
 constexpr double range_below = 0.5;
 constexpr double range_above = 2.0;
+/// As a share of the way from the design where the window was met to the one asked for; steps double after each
+/// success.
 constexpr double first_step = 0.125;
 constexpr double bold_distance = 0.05;  ///< a design so near is tried in one step
+/// Shorter steps mean that an end is lost or that both have met.
 constexpr double smallest_step = 1.0 / 1024.0;
 
 WindowEnd end_from(const branch::BoundaryPoint& found) {
@@ -39,6 +42,7 @@ const branch::BoundaryPoint& grazing_beside(const branch::Branch& branch, const 
     return found;
 }
 
+/// The design at `share` of the way; keys that b does not have stay as in a.
 Specification between(const Specification& a, const Specification& b, double share) {
     Specification spec = a;
     for (std::size_t i = 0; i < spec.values.size(); ++i) {
@@ -47,12 +51,14 @@ Specification between(const Specification& a, const Specification& b, double sha
     return spec;
 }
 
+/// The system of a specification, at a frequency of ours in place of its own.
 flow::System at_design(const flow::System& system, const Specification& spec, double omega) {
     flow::ParameterVector parameters = model::scale(spec).parameters;
     parameters[static_cast<std::size_t>(system.integrator->info().omega)] = omega;
     return system.with(parameters);
 }
 
+/// An end of the window at a design, by Newton from a guess, with d(omega) along the keys at the end's own frequency.
 boundary::CriticalPoint solve_end(const flow::System& system, const Specification& spec, const WindowEnd& guess,
                                   std::span<const Key> keys) {
     const flow::System here = at_design(system, spec, guess.omega);
@@ -61,6 +67,7 @@ boundary::CriticalPoint solve_end(const flow::System& system, const Specificatio
     const auto omega = static_cast<std::size_t>(system.integrator->info().omega);
     for (const Key key : keys) {
         directions.push_back(model::scale_derivative(spec, key).parameters);
+        // The end lies where it lies, wherever the design is driven.
         directions.back()[omega] = 0.0;
     }
     return boundary::solve_critical(family, guess.kind, guess.motion, guess.omega, guess.contact, guess.angle,
@@ -89,8 +96,11 @@ WindowEnd predict(const flow::System& system, const WindowEnd& before, const Win
 /// The end solved for from a guess; false when it is lost or jumps.
 bool correct(const flow::System& system, const Specification& spec, WindowEnd& end) {
     const auto solved = solve_end(system, spec, end, {});
+    // More than 1 % off the prediction is another boundary.
     if (!solved.ok() || std::abs(solved.parameter - end.omega) > 0.01 * end.omega) { return false; }
     for (const auto& contact : solved.motion.sequence.contacts) {
+        // Beyond a grazing the equations go on without a motion (negative entry speed). A grazing point itself has
+        // speed 0 up to rounding.
         if (contact.speed < -1e-9) { return false; }
     }
     end.motion = solved.motion;
@@ -107,6 +117,8 @@ bool carry(const flow::System& system, const Intruder& intruder, const Specifica
     Ends next = {target, predict(system, before.lower, ends.lower, ratio),
                  predict(system, before.upper, ends.upper, ratio)};
     if (!correct(system, spec, next.lower) || !correct(system, spec, next.upper)) { return false; }
+    // Where the window closes both ends come together, and a longer step could carry one of them past the other or both
+    // to the same point.
     if (!(next.width() > 0.5 * ends.width())) { return false; }
     ends = std::move(next);
     return true;
@@ -131,6 +143,7 @@ Intruder find_window(const flow::System& system, const Specification& design, co
         return intruder;
     }
     const auto by_frequency = [](const auto& a, const auto& b) { return a.point.parameter < b.point.parameter; };
+    // Stable or not: between its outermost boundaries lies the whole cascade, all of which is to be kept away from.
     const auto [lowest, highest] =
         std::minmax_element(branch.boundaries.begin(), branch.boundaries.end(), by_frequency);
     intruder.lowest = end_from(*lowest);
@@ -138,6 +151,8 @@ Intruder find_window(const flow::System& system, const Specification& design, co
     intruder.lower = end_from(grazing_beside(branch, *lowest));
     intruder.upper = end_from(grazing_beside(branch, *highest));
     const auto beyond_an_end = [&](const branch::Point& p) {
+        // Twice the distance at which a grazing point stands in for a fold: no more than that may the branch reach
+        // beyond its ends.
         return p.parameter > intruder.upper.omega * (1.0 + 2e-5) || p.parameter < intruder.lower.omega * (1.0 - 2e-5);
     };
     if (!(intruder.lower.omega < system.omega() && system.omega() < intruder.upper.omega)) {
@@ -184,6 +199,8 @@ WindowAt window_at(const flow::System& system, const Intruder& intruder, const S
     WindowAt window;
     Ends ends = {0.0, intruder.lower, intruder.upper};
     Ends before = ends;
+    // Small changes of a design, as an optimiser makes them near its end, take one step; large ones begin with an
+    // eighth.
     double step = std::clamp(bold_distance / (distance(intruder.design, design) + 1e-12), first_step, 1.0);
     while (ends.at < 1.0) {
         Ends next = ends;
@@ -208,6 +225,7 @@ WindowAt window_at(const flow::System& system, const Intruder& intruder, const S
     const auto exact_lower = solve_end(system, design, lower, keys);
     const auto exact_upper = solve_end(system, design, upper, keys);
     if (!exact_lower.ok() || !exact_upper.ok()) { return window; }
+    // Narrower than what the two ends are solved to.
     if (!(exact_upper.parameter - exact_lower.parameter > 1e-9 * exact_upper.parameter)) {
         window.status = WindowAt::Status::vanished;  // both ends are the same point
         return window;

@@ -17,6 +17,8 @@ ArclengthWalker::ArclengthWalker(CurveFunction function, ArclengthOptions option
     : function_(std::move(function)),
       options_(options) {}
 
+// F' t = 0 and orientation . t = 1, scaled to length 1: the tangent on the side that `orientation` points to. Bordering
+// by the last tangent keeps the matrix regular through folds, where F' without the parameter's column is singular.
 bool ArclengthWalker::solve_tangent(const Vector& orientation) {
     Vector right = Vector::Zero(orientation.size());
     right[right.size() - 1] = 1.0;
@@ -89,6 +91,8 @@ bool ArclengthWalker::probe(double step, Vector& u, Vector& tangent) {
 }
 
 void ArclengthWalker::predict() {
+    // On a nearly straight curve the angle lets the step grow until peaks and boundaries are leapt over: the parameter
+    // has a limit of its own.
     const double along = std::abs(tangent_[tangent_.size() - 1]);
     if (step_ * along > options_.largest_parameter_step) { step_ = options_.largest_parameter_step / along; }
     predicted_ = u_ + step_ * tangent_;
@@ -96,6 +100,8 @@ void ArclengthWalker::predict() {
 }
 
 Vector ArclengthWalker::bend() const {
+    // c(r) = u + r t + r^2 second + r^3 third with c(-s) and c'(-s) the previous point and tangent, s the chord. Two
+    // conditions: second - s third = by_points, 2 second - 3 s third = by_tangents.
     const Vector chord = u_ - previous_u_;
     const double s = chord.norm();
     const Vector by_points = (s * tangent_ - chord) / (s * s);
@@ -103,13 +109,17 @@ Vector ArclengthWalker::bend() const {
     const Vector second = 3.0 * by_points - by_tangents;
     const Vector third = (2.0 * by_points - by_tangents) / s;
     Vector bent = step_ * step_ * (second + step_ * third);
+    // At right angles to the tangent the plane of the corrector stays the one at distance step_, as without the bend.
     bent -= tangent_.dot(bent) * tangent_;
+    // A curve that bends by more turns its tangent beyond the largest angle: the step would be rejected.
     const double furthest = options_.largest_angle * step_;
     return bent.norm() <= furthest ? bent : Vector::Zero(u_.size());
 }
 
 ArclengthWalker::Correction ArclengthWalker::correct() {
     // A corrector that moves far against the step has left for another branch.
+    // Without this, a plain corrector beside the upper grazing point of an impact oscillator lands on the far side of
+    // the S that the branch makes there.
     const double furthest = options_.largest_correction * step_;
     const auto across = [&](const Vector& x, Linear& at) {
         return (x - predicted_).norm() <= furthest &&
@@ -121,6 +131,8 @@ ArclengthWalker::Correction ArclengthWalker::correct() {
 }
 
 void ArclengthWalker::adapt(double angle) {
+    // The angle is proportional to the step where the curvature is constant. Not more than doubled or halved at once:
+    // one measured angle says little about the curvature a long way ahead.
     const double factor = angle > 0.0 ? std::clamp(options_.target_angle / angle, 0.5, 2.0) : 2.0;
     last_step_ = step_;
     step_ = std::min(step_ * factor, options_.largest_step);
@@ -133,9 +145,11 @@ bool ArclengthWalker::advance() {
             step_ *= 0.5;
             continue;
         }
+        // The tangent needs the Jacobian at the new point; from here the candidate holds the old one, to go back to.
         std::swap(jacobian_, candidate_jacobian_);
         const Vector old_tangent = tangent_;
         const bool sound = solve_tangent(old_tangent);
+        // 10 rad is beyond any angle allowed: a tangent that cannot be solved for rejects the step.
         const double angle = sound ? std::acos(std::clamp(old_tangent.dot(tangent_), -1.0, 1.0)) : 10.0;
         if (!sound || angle > options_.largest_angle) {
             std::swap(jacobian_, candidate_jacobian_);
@@ -159,6 +173,7 @@ bool ArclengthWalker::retreat() {
     u_ = previous_u_;
     tangent_ = previous_tangent_;
     jacobian_ = previous_jacobian_;
+    // The full step would lead to the same point again. After one retreat there is nothing further back to return to.
     step_ = 0.5 * last_step_;
     has_previous_ = false;
     return can_continue();

@@ -153,10 +153,15 @@ PERCUSS_INLINE LaneVector<N> log(const LaneVector<N>& a) {
     LaneVector<N> e;
     for (int i = 0; i < LaneVector<N>::parts; ++i) {
         const Bits bits = (Bits)a.part[i];
+        // Adding 1 - sqrt(1/2) in the bits carries into the exponent from mantissas above sqrt(2): e is then one higher
+        // and m below 1, so that log m does not cancel against e log 2 for a just below 1.
         const Bits high = (bits + (one - root_half)) & exponent;
         m.part[i] = (LanePart<N>)(bits - high + one);
+        // An integer below 2^52 set as the mantissa of 2^52 is that integer as a double: no conversion instruction,
+        // which older instruction sets lack for 64 bits.
         e.part[i] = (LanePart<N>)((high >> 52) | two_to_52) - (0x1p52 + 1023.0);
     }
+    // |s| <= 0.172, z <= 0.0295: the first term left out, z^11/23, is below 1e-18.
     static constexpr double odd[] = {2.0 / 3,  2.0 / 5,  2.0 / 7,  2.0 / 9,  2.0 / 11,
                                      2.0 / 13, 2.0 / 15, 2.0 / 17, 2.0 / 19, 2.0 / 21};
     constexpr double log2_high = 0x1.62e42fefp-1;  // 33 bits: products with exponents are exact
@@ -174,12 +179,15 @@ PERCUSS_INLINE LaneVector<N> log(const LaneVector<N>& a) {
 template <int N>
 PERCUSS_INLINE LaneVector<N> exp(const LaneVector<N>& a) {
     using Bits = typename LaneIntegers<N>::Bits;
+    // Adding 1.5 2^52 rounds to the nearest integer, which then stands in the lowest bits.
     constexpr double shifter = 0x1.8p52;
     constexpr double log2_high = 0x1.62e42fefp-1;
     constexpr double log2_low = 0x1.473de6af278edp-34;
+    // |r| <= ln(2)/2: the first term left out, r^14/14!, is 4e-18.
     static constexpr double reciprocal_factorials[] = {
         1.0 / 2,     1.0 / 6,      1.0 / 24,      1.0 / 120,      1.0 / 720,       1.0 / 5040,
         1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800};
+    // Between these the exponent k stays in the range of normal numbers, so that adding it to the bits below is exact.
     const LaneVector<N> x = select(a < 709.0, select(a < -708.0, all_lanes<N>(-708.0), a), min(a, all_lanes<N>(709.0)));
     LaneVector<N> shifted = x * 0x1.71547652b82fep0 + shifter;
     const LaneVector<N> k = shifted - shifter;
@@ -199,9 +207,11 @@ template <int N>
 PERCUSS_INLINE void cos_sin(const LaneVector<N>& a, LaneVector<N>& c, LaneVector<N>& s) {
     using Bits = typename LaneIntegers<N>::Bits;
     constexpr double shifter = 0x1.8p52;
+    // Multiples of pi/2 up to 2^20, angles up to 1.6e6, times 33 bits are exact in double precision.
     constexpr double part1 = 0x1.921fb544p0;
     constexpr double part2 = 0x1.0b4611a6p-34;
     constexpr double part3 = 0x1.3198a2e037073p-69;
+    // |r| <= pi/4: the first terms left out are r^17/17! = 5e-17 and r^18/18! = 2e-18.
     static constexpr double sine[] = {-1.0 / 6,        1.0 / 120,          -1.0 / 5040,           1.0 / 362880,
                                       -1.0 / 39916800, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
     static constexpr double cosine[] = {1.0 / 24,          -1.0 / 720,           1.0 / 40320,           -1.0 / 3628800,
@@ -213,6 +223,7 @@ PERCUSS_INLINE void cos_sin(const LaneVector<N>& a, LaneVector<N>& c, LaneVector
     const LaneVector<N> sin_r = r + r * z * polynomial<N>(sine, z);
     const LaneVector<N> cos_r = (z * z * polynomial<N>(cosine, z) - z * 0.5) + 1.0;
     for (int i = 0; i < LaneVector<N>::parts; ++i) {
+        // In odd quadrants sine and cosine change places; sine is negative in quadrants 2 and 3, cosine in 1 and 2.
         const Bits quadrant = (Bits)shifted.part[i];
         const typename LaneIntegers<N>::Truth odd = (quadrant & 1) != 0;
         const Bits sin_bits = odd ? (Bits)cos_r.part[i] : (Bits)sin_r.part[i];

@@ -27,6 +27,8 @@ namespace percuss::numerics {
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// The defaults are those of stroboscopic shooting; see the callers for what differs and why.
+/// Steps are cut at half the size of the state: a longer one, from a far guess, may lead to a motion with other
+/// contacts, of which the linear model knows nothing.
 struct NewtonOptions {
     int max_iterations = 25;
     int min_iterations = 1;  ///< convergence is not looked for before
@@ -152,6 +154,7 @@ private:
     }
 
     void limit_step() {
+        // Only the length is cut, not the direction: it stays a direction of descent of |F|.
         const double longest = options_.max_step * (options_.max_step_is_relative ? scale_ : 1.0);
         if (out_.last_step > longest) { step_ *= longest / out_.last_step; }
     }

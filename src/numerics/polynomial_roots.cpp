@@ -9,6 +9,7 @@ namespace {
 using Coefficients = std::array<double, max_degree + 1>;
 
 /// Halving stops here: two roots closer than this are one touch.
+/// 2^-40 of the interval is 1e-12 of an integration step.
 constexpr int max_depth = 40;
 
 struct Search {
@@ -50,11 +51,13 @@ void evaluate(const double* c, int degree, double t, double& value, double& slop
 void to_bernstein(const double* c, int n, Coefficients& b) {
     const double* binomial = &binomials[static_cast<std::size_t>(n * (n + 1) / 2)];
     for (int j = 0; j <= n; ++j) { b[static_cast<std::size_t>(j)] = c[j] / binomial[j]; }
+    // The sums with C(i, j) are made by Pascal's rule, in place, additions only.
     for (int level = 1; level <= n; ++level) {
         for (int i = n; i >= level; --i) { b[static_cast<std::size_t>(i)] += b[static_cast<std::size_t>(i - 1)]; }
     }
 }
 
+/// Sign changes of the coefficients, zeros left out: as many as there are roots in (0, 1), or more by an even number.
 int variations(const Coefficients& b, int n) {
     int count = 0;
     int last = 0;
@@ -73,13 +76,16 @@ int variations(const Coefficients& b, int n) {
 /// shrinking bracket.
 double polish(const Search& search, double lower, double upper, int after) {
     double t = 0.5 * (lower + upper);
+    // A cap: halving alone comes to the spacing of doubles below 1 in 53 rounds, Newton's steps in a few.
     for (int iteration = 0; iteration < 80; ++iteration) {
         double value = 0.0;
         double slope = 0.0;
         evaluate(search.monomial, search.degree, t, value, slope);
         if (value == 0.0) { return t; }
+        // The side is told by the sign alone: a product of values could underflow.
         ((value > 0.0) == (after > 0) ? upper : lower) = t;
         double next = t - value / slope;
+        // Also where the slope vanishes and next is infinite or NaN.
         if (!(next > lower && next < upper)) { next = 0.5 * (lower + upper); }
         if (std::abs(next - t) <= 1e-16 || next == t) { return next; }
         t = next;
@@ -87,6 +93,7 @@ double polish(const Search& search, double lower, double upper, int after) {
     return t;
 }
 
+/// Adds a root, with the sign that the polynomial has after it, where that sign is wanted.
 void record(const Search& search, double t, int after) {
     if (search.wanted != 0 && after != search.wanted) { return; }
     Roots& r = *search.roots;
@@ -95,11 +102,13 @@ void record(const Search& search, double t, int after) {
     ++r.count;
 }
 
+/// The roots inside (lower, lower + width), where the polynomial has Bernstein coefficients b; in increasing order.
 void isolate(const Search& search, const Coefficients& b, double lower, double width, int depth) {
     const int n = search.degree;
     const int changes = variations(b, n);
     if (changes == 0 || search.full()) { return; }
     if (changes == 1) {
+        // One sign change is one root exactly; the last coefficient that is not zero has the sign after it.
         int after = 0;
         for (int i = n; i >= 0 && after == 0; --i) {
             const double x = b[static_cast<std::size_t>(i)];
@@ -121,6 +130,7 @@ void isolate(const Search& search, const Coefficients& b, double lower, double w
         }
     }
     isolate(search, left, lower, 0.5 * width, depth + 1);
+    // The halves are open intervals: neither sees a root on their common end.
     const double middle = left[static_cast<std::size_t>(n)];
     if (middle == 0.0 && !search.full()) {  // a root exactly between the halves
         const auto first_sign = [](const Coefficients& c, int from, int to, int step) {
@@ -141,12 +151,14 @@ void isolate(const Search& search, const Coefficients& b, double lower, double w
 void check_upper_end(const Search& search, const Coefficients& b) {
     int last = search.degree;
     while (last > 0 && b[static_cast<std::size_t>(last)] == 0.0) { --last; }
+    // A multiple root of even order touches; the last coefficient that is not zero has the sign before the end.
     const bool crosses = (search.degree - last) % 2 == 1;
     if (crosses && !search.full()) { record(search, 1.0, b[static_cast<std::size_t>(last)] > 0.0 ? -1 : 1); }
 }
 
 Roots run(const double* c, int degree, int wanted) {
     Roots roots;
+    // Vanishing leading coefficients are no roots; without them the loops are as short as the polynomial is.
     while (degree > 0 && c[degree] == 0.0) { --degree; }
     if (degree <= 0) { return roots; }
     Coefficients b{};

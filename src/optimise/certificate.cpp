@@ -33,6 +33,8 @@ void check(const Evaluation& evaluation, const Vector& x, const Vector& lower, c
     throw std::invalid_argument(message.str());
 }
 
+/// What may have a multiplier: solvers end a little inside their constraints, hence all within `activity`. A narrow
+/// variable may be at both of its bounds.
 std::vector<Candidate> active_set(const Evaluation& evaluation, const Vector& x, const Vector& lower,
                                   const Vector& upper, double activity) {
     std::vector<Candidate> active;
@@ -74,6 +76,8 @@ Certificate certify(const Evaluation& evaluation, const Vector& x, const Vector&
     const Vector& c = evaluation.constraints;
     const std::vector<Candidate> active = active_set(evaluation, x, lower, upper, options.activity);
     const Matrix columns = active_gradients(active, evaluation);
+    // g + J^T lambda + b = 0 in the least-squares sense, with the sign of a bound in its column so that every unknown
+    // is non-negative.
     const Vector multipliers = solve_nnls(columns, -g).x;
 
     certificate.residual =
@@ -85,6 +89,7 @@ Certificate certify(const Evaluation& evaluation, const Vector& x, const Vector&
         double distance = 0.0;
         if (kind == Candidate::Kind::constraint) {
             certificate.multipliers[index] = multiplier;
+            // Not exactly zero for an active constraint: the product tells how much that matters.
             distance = c[index];
         } else if (multiplier > 0) {
             certificate.bound_multipliers[index] += sign * multiplier;

@@ -12,6 +12,7 @@ Evaluation ElasticNlp::evaluate(const Vector& z, bool want_gradient) {
     elastic.objective = t;
     elastic.constraints = inner.constraints.array() - t;
     if (!want_gradient) return elastic;
+    // f = t, c_i - t <= 0: by (x, t) the gradient is (0, 1) and the Jacobian [J, -1].
     elastic.gradient = joined(Vector::Zero(n), 1.0);
     elastic.jacobian.resize(inner.jacobian.rows(), n + 1);
     elastic.jacobian << inner.jacobian, Vector::Constant(inner.jacobian.rows(), -1.0);

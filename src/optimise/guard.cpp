@@ -28,6 +28,7 @@ std::optional<Halt> Guard::halt() const {
 }
 
 int Guard::max_calls() const {
+    // Counts of NLopt are ints: hence at most 1e9.
     return static_cast<int>(std::min(10LL * nlp_.limits().max_evaluations + 1000, 1'000'000'000LL));
 }
 

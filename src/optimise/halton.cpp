@@ -31,6 +31,8 @@ Halton::Halton(int dimensions, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     for (int j = 0; j < dimensions; ++j) {
         const int base = primes[static_cast<std::size_t>(j)];
+        // As many digits as fill the 53 bits of a double. All of them are drawn and permuted, the leading zeros of k
+        // too: they make the points random beyond the digits that k has.
         const int digits = static_cast<int>(std::numeric_limits<double>::digits / std::log2(base));
         auto& coordinate = permutations_.emplace_back();
         for (int i = 0; i < digits; ++i) coordinate.push_back(random_permutation(base, random));
@@ -49,6 +51,7 @@ numerics::Vector Halton::point(std::uint64_t k) const {
             value += weight * permutation[rest % base];
             rest /= base;
         }
+        // Rounding can make the sum 1.
         x[j] = std::min(value, 1.0 - std::numeric_limits<double>::epsilon() / 2);
     }
     return x;

@@ -70,6 +70,7 @@ public:
 
     bool get_starting_point(Index /*n*/, bool init_x, Number* x, bool init_z, Number* /*z_lower*/, Number* /*z_upper*/,
                             Index /*m*/, bool init_lambda, Number* /*lambda*/) override {
+        // No multipliers to begin with; Ipopt estimates its own.
         if (init_z || init_lambda) return false;
         if (init_x) write(x, x_);
         return true;
@@ -112,6 +113,7 @@ public:
                                Number, Number, Number, Index, const Ipopt::IpoptData*,
                                Ipopt::IpoptCalculatedQuantities*) override {
         iterations_ = std::max(iterations_, static_cast<int>(iteration));
+        // Failed evaluations alone would make Ipopt shorten its steps on and on: a halted guard has to be told here.
         return !guard_.halted();
     }
 
@@ -142,14 +144,19 @@ void configure(Ipopt::OptionsList& list, const Options& options, const Limits& l
     list.SetIntegerValue("print_level", 0);
     list.SetStringValue("sb", "yes");
     list.SetStringValue("hessian_approximation", "limited-memory");
+    // More pairs than there are variables (ten or so): the model can hold the whole curvature.
     list.SetIntegerValue("limited_memory_max_history", 12);
     list.SetStringValue("nlp_scaling_method", "none");  // the caller has scaled
+    // By default Ipopt moves the bounds outwards by 1e-8 and evaluates there, where points are clipped to the bounds
+    // and gradients belong to other points than it thinks.
     list.SetNumericValue("bound_relax_factor", 0.0);
     list.SetStringValue("honor_original_bounds", "yes");
     list.SetNumericValue("tol", options.tolerance);
+    // Ipopt wants it positive; the caller's tolerance may be zero.
     list.SetNumericValue("constr_viol_tol", std::max(1e-12, limits.feasibility_tolerance));
     list.SetNumericValue("compl_inf_tol", options.tolerance);
     list.SetNumericValue("dual_inf_tol", std::max(1e-12, 100 * options.tolerance));
+    // Not meant to be the end of a run: the guard counts evaluations.
     list.SetIntegerValue("max_iter", std::max(100, limits.max_evaluations));
     if (!stay_put) return;
     for (const char* name : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"}) {
@@ -158,6 +165,7 @@ void configure(Ipopt::OptionsList& list, const Options& options, const Limits& l
     list.SetNumericValue("mu_init", 1e-5);
 }
 
+/// "Acceptable level" is no claim: it means that Ipopt stalled above its tolerance.
 SolverAnswer::Claim claim_of(Ipopt::ApplicationReturnStatus status) {
     if (status == Ipopt::Solve_Succeeded) return SolverAnswer::Claim::optimum;
     if (status == Ipopt::Infeasible_Problem_Detected) return SolverAnswer::Claim::infeasible;
@@ -200,6 +208,8 @@ Ending run_once(Guard& guard, const Vector& start, const Options& options, bool 
 
 SolverAnswer run_ipopt(Guard& guard, const Vector& start, const Options& options) {
     Ending ending = run_once(guard, start, options, options.warm);
+    // Ipopt pushes the start inwards; where that lands in a region that cannot be evaluated it ends before its first
+    // iteration.
     const bool never_left = ending.status != Ipopt::Solve_Succeeded && ending.iterations == 0;
     if (never_left && !options.warm && !guard.halted()) ending = run_once(guard, start, options, true);
     return {claim_of(ending.status), ending.x, guard.last(), "Ipopt: " + words_for(ending.status)};

@@ -8,6 +8,7 @@ namespace {
 
 const Evaluation failed_evaluation{};
 
+/// The key of a point: the same number in other bits (-0.0) is at worst evaluated twice.
 std::string bits_of(const Vector& x) {
     return {reinterpret_cast<const char*>(x.data()), static_cast<std::size_t>(x.size()) * sizeof(double)};
 }
@@ -70,6 +71,8 @@ const Evaluation& MemoisedNlp::look_up(const Vector& x, bool want_gradient) {
         Entry& entry = found->second;
         const bool has_gradient = entry.evaluation.gradient.size() > 0;
         if (!want_gradient || !entry.evaluation.ok || has_gradient) return entry.evaluation;
+        // The value stays known and usable; only who wants a gradient sees a failure, and the attempt is not made
+        // twice.
         if (entry.gradient_failed) return failed_evaluation;
         Evaluation upgraded = call(inside, true);
         entry.gradient_failed = !upgraded.ok;
@@ -81,6 +84,7 @@ const Evaluation& MemoisedNlp::look_up(const Vector& x, bool want_gradient) {
     try {
         entry.evaluation = call(inside, want_gradient);
     } catch (...) {
+        // Halted or thrown: the point was not evaluated, and must not be remembered as failed.
         known_.erase(key);
         throw;
     }

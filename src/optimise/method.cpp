@@ -16,6 +16,7 @@ std::vector<Method> joined(std::initializer_list<std::vector<Method>> libraries)
     return table;
 }
 
+/// "1 variable", "2 variables".
 std::string counted(int count, const char* noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }

@@ -51,6 +51,8 @@ Visited visited(const Outcome& outcome) {
 }
 
 /// What is seen as equal: objectives, or violations, that differ by no more than constraints may be off.
+/// The factor stands for multipliers above 1: a constraint that is off by the tolerance moves the objective by its
+/// multiplier times that.
 double tie(double value, double feasibility_tolerance) {
     return 10 * feasibility_tolerance * std::max(1.0, std::abs(value));
 }
@@ -117,6 +119,7 @@ void Search::look_around() {
     const Vector lower = memo_.lower();
     const Vector width = memo_.upper() - lower;
     until_halted([&] {
+        // In a box where most designs fail, all the candidates asked for may: the sequence then goes on for a while.
         for (int k = 0; k < options_.candidates || (ranked_.empty() && k < 8 * options_.candidates); ++k) {
             const Vector x = lower + width.cwiseProduct(sequence.point(static_cast<std::uint64_t>(k)));
             const Evaluation here = memo_.evaluate(x, false);
@@ -130,6 +133,7 @@ void Search::look_around() {
         const bool feasible = v.infeasibility <= tolerance;
         return std::pair(!feasible, feasible ? v.objective : v.infeasibility);
     };
+    // Feasible ones first, by objective; the others by violation. Stable: equals stay in the order of the sequence.
     std::stable_sort(ranked_.begin(), ranked_.end(),
                      [&](const Visited& a, const Visited& b) { return rank(a) < rank(b); });
 }
@@ -146,6 +150,7 @@ std::vector<Vector> Search::separated_starts() const {
         });
         if (apart) starts.push_back(candidate.x);
     }
+    // A global method searches the whole box each time, wherever it starts.
     if (is_global(options_.solver.method) && starts.size() > 1) starts.resize(1);
     return starts;
 }
@@ -154,6 +159,7 @@ std::vector<Vector> Search::separated_starts() const {
 Options Search::share(int solves_left) const {
     Options options = options_.solver;
     options.warm = false;
+    // One part more than solves are left: what the last of them leaves is for the polish.
     options.max_evaluations = std::min(memo_.remaining(), std::max(50, memo_.remaining() / (solves_left + 1)));
     return options;
 }
@@ -175,6 +181,7 @@ void Search::solve_from_starts() {
         result_.locals.push_back(solve(memo_, starts[k], options));
         if (result_.locals.back().feasible) consider(visited(result_.locals.back()));
     }
+    // Also a candidate or a point on the way, which no solver ended on.
     if (found_feasible()) consider(*memo_.best_feasible());
 }
 
@@ -204,11 +211,13 @@ void Search::consider(const Visited& point) {
 /// The same for points outside the feasible set, by their largest violation.
 void Search::consider_elastic(const Visited& point) {
     Best candidate = uncertified(point);
+    // A ceiling well above t, or its bound would count as active in the certificate.
     ElasticNlp elastic(memo_, options_.elastic_floor, 2 * point.infeasibility + 1);
     const Vector z = ElasticNlp::joined(point.x, point.infeasibility);
     until_halted([&] {
         candidate.certificate =
             certify(elastic.evaluate(z, true), z, elastic.lower(), elastic.upper(), options_.certificate);
+        // Without that of t, which is no variable of the caller.
         candidate.certificate.bound_multipliers.conservativeResize(memo_.variables());
     });
     if (elastic_) {
@@ -224,6 +233,7 @@ void Search::relax_from(const Vector& start, const Options& options) {
     double t = 0;
     until_halted([&] { t = infeasibility_of(memo_.look_up(start, false).constraints); });
     ElasticNlp elastic(memo_, options_.elastic_floor, 2 * t + 1);
+    // With t above the largest violation the start is strictly feasible for the relaxed problem.
     const Outcome outcome = solve(elastic, ElasticNlp::joined(start, 1.1 * t + 1e-3), options);
     if (outcome.constraints.size() == 0) return;
     const Vector x = memo_.clip(outcome.x.head(memo_.variables()));
@@ -238,10 +248,12 @@ void Search::relax() {
     if (!memo_.least_infeasible()) return;
     consider_elastic(*memo_.least_infeasible());
     std::vector<Vector> starts = separated_starts();
+    // The least infeasible point of the local solves lies nearest to a way in.
     starts.insert(starts.begin(), memo_.least_infeasible()->x);
     const auto unfinished = [&] { return !found_feasible() && halted_.empty(); };
     for (std::size_t k = 0; k < starts.size() && unfinished(); ++k) {
         Options options = share(static_cast<int>(starts.size() - k));
+        // From a point, not over the box once more.
         if (is_global(options.method)) options.method = "slsqp";
         relax_from(starts[k], options);
     }
@@ -267,6 +279,8 @@ bool Search::wants_polish() const {
 
 /// slsqp and ipopt in turn, not beginning with the one that has just been at work.
 std::string Search::polish_method(int round) const {
+    // What one of them cannot improve the other may: their models, steps and tests differ. Global methods end with a
+    // polish by slsqp.
     const bool was_slsqp = options_.solver.method == "slsqp" || is_global(options_.solver.method);
     return was_slsqp == (round % 2 == 0) ? "ipopt" : "slsqp";
 }
@@ -274,13 +288,18 @@ std::string Search::polish_method(int round) const {
 void Search::polish() {
     Options options = share(options_.polish_rounds - polished_);
     options.method = polish_method(polished_);
+    // Solvers scale their tests in other ways than the certificate: they are asked for a tenth of it.
     options.tolerance = std::min(options.tolerance, 0.1 * options_.certificate_tolerance);
+    // Each method begins where the point is; should neither certify it so, Ipopt takes its usual way through the
+    // interior.
     options.warm = polished_ < 2;
     ++polished_;
     const Best before = *best_;
     const Outcome outcome = solve(memo_, before.point.x, options);
     if (outcome.feasible) consider(visited(outcome));
     const double gain = before.point.objective - best_->point.objective;
+    // A polish counts if it lowers the objective for certain or halves the residual; two in a row that do not, one by
+    // each method, end it: kinks and edges of what can be evaluated have no certificate.
     const bool improved = gain > tie(before.point.objective, options.feasibility_tolerance) ||
                           best_->certificate.residual < 0.5 * before.certificate.residual;
     in_vain_ = improved ? 0 : in_vain_ + 1;

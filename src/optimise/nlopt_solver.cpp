@@ -52,6 +52,8 @@ double callback(unsigned n, const double* x, double* gradient, void* data) noexc
         else if (objective) out = here.gradient;
         else out = here.jacobian.row(row).transpose();
     }
+    // Finite values: StoGO throws on infinite ones. Every constraint violated, so that the point is never taken for
+    // feasible.
     if (!here.ok) return objective ? context->penalty : 1.0;
     return objective ? here.objective : here.constraints[row];
 }
@@ -76,11 +78,14 @@ void require_compiled(const NloptRow& method) {
 /// x is judged by its own steps; the value test is much finer, since f is flat at an optimum.
 void set_tolerances(nlopt_opt handle, double tolerance, int max_calls) {
     nlopt_set_xtol_rel(handle, tolerance);
+    // A variable that ends at zero never meets a relative test.
     nlopt_set_xtol_abs1(handle, tolerance);
     nlopt_set_ftol_rel(handle, std::max(1e-15, tolerance * tolerance));
     nlopt_set_maxeval(handle, max_calls);
 }
 
+/// Claims only: SLSQP and MMA also return slightly infeasible points as success. Ended by rounding is often as near as
+/// it gets; the check afterwards decides.
 SolverAnswer::Claim claim_of(nlopt_result result) {
     switch (result) {
         case NLOPT_SUCCESS:
@@ -91,6 +96,7 @@ SolverAnswer::Claim claim_of(nlopt_result result) {
     }
 }
 
+/// NLOPT_FAILURE for whatever the library throws; `words` tells what it said.
 nlopt_result optimise_without_throwing(nlopt_opt handle, Vector& x, std::string& words) {
     double objective = 0.0;
     try {
@@ -127,6 +133,7 @@ SolverAnswer run_nlopt(Guard& guard, const Vector& start, const NloptRow& method
     set_tolerances(handle.get(), options.tolerance, max_calls);
 
     Handle inner;  // NLopt copies local optimisers
+    // MLSL runs a local method from its points; SLSQP, as the polish afterwards does.
     if (method.algorithm == NLOPT_G_MLSL_LDS) {
         inner = create(NLOPT_LD_SLSQP, n);
         set_tolerances(inner.get(), options.tolerance, max_calls);
@@ -134,6 +141,8 @@ SolverAnswer run_nlopt(Guard& guard, const Vector& start, const NloptRow& method
     if (lagrangian) {
         Handle outer_local = create(method.algorithm, n);
         set_tolerances(outer_local.get(), options.tolerance,
+                       // A global method takes all the calls it is given, but the augmented Lagrangian needs several
+                       // rounds to find its multipliers: at least five.
                        method.capabilities.global ? std::max(1, max_calls / 5) : max_calls);
         if (inner) nlopt_set_local_optimizer(outer_local.get(), inner.get());
         nlopt_set_local_optimizer(handle.get(), outer_local.get());
@@ -146,6 +155,7 @@ SolverAnswer run_nlopt(Guard& guard, const Vector& start, const NloptRow& method
     nlopt_srand(static_cast<unsigned long>(options.seed));  // the generator belongs to this thread
     const nlopt_result result = optimise_without_throwing(handle.get(), answer.x, answer.message);
     answer.claim = claim_of(result);
+    // Without gradients the last point asked for is just a probe.
     if (method.capabilities.gradient) answer.last = guard.last();
     answer.message = "NLopt " + method.name + ": " + answer.message;
     return answer;

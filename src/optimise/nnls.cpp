@@ -21,6 +21,8 @@ Vector least_squares_on(const Matrix& a, const Vector& b, const std::vector<Eige
 /// The column outside the support along which the residual falls fastest, or -1 if none beyond rounding.
 Eigen::Index entering_column(const Matrix& a, const Vector& residual, const Vector& norms, const Vector& x,
                              double scale) {
+    // Slopes of the size of rounding in the residual, which is at most as long as b, would let columns enter and leave
+    // for ever.
     const double rounding = 100 * std::numeric_limits<double>::epsilon() * scale;
     Eigen::Index best = -1;
     double steepest = 0.0;
@@ -53,6 +55,7 @@ NonNegativeLeastSquares solve_nnls(const Matrix& a, const Vector& b) {
     const Vector norms = a.colwise().norm().transpose();
     std::vector<Eigen::Index> support;
 
+    // Finite in exact arithmetic, where every entry lowers the residual; the cap is for rounding.
     int changes_left = 3 * static_cast<int>(a.cols()) + 10;
     while (changes_left-- > 0) {
         const Eigen::Index entering = entering_column(a, b - a * x, norms, x, b.norm());
@@ -67,10 +70,13 @@ NonNegativeLeastSquares solve_nnls(const Matrix& a, const Vector& b) {
             result.converged = true;
             break;
         }
+        // The inner loop of Lawson and Hanson: go towards the least-squares solution until the first entry reaches
+        // zero, drop it from the support, solve again on the rest.
         while (!support.empty() && target(support).minCoeff() <= 0) {
             const double step = step_to_bound(x, target, support);
             x += step * (target - x);
             std::erase_if(support, [&](Eigen::Index j) {
+                // The entry that limited the step is zero up to rounding.
                 const bool leaves = target[j] <= 0 && x[j] <= 1e-14 * std::max(1.0, x.maxCoeff());
                 if (leaves) x[j] = 0;
                 return leaves;

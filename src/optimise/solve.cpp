@@ -26,6 +26,7 @@ const Method& polisher() { return find_method("slsqp"); }
 
 /// The search of a global method on its share of the budget; returns the point to polish.
 Vector explored(MemoisedNlp& memo, const Method& method, const Vector& start, const Options& options) {
+    // A share only: the rest is for the polish, to which all points evaluated here are free.
     memo.allow(static_cast<int>(std::ceil(options.global_share * options.max_evaluations)));
     Guard guard(memo);
     (void)method.solver(guard, start, options);
@@ -35,6 +36,7 @@ Vector explored(MemoisedNlp& memo, const Method& method, const Vector& start, co
     return memo.least_infeasible() ? memo.least_infeasible()->x : start;
 }
 
+/// A visited point as the outcome's.
 void fill(Outcome& outcome, const Visited& point, double feasibility_tolerance) {
     outcome.x = point.x;
     outcome.objective = point.objective;
@@ -43,6 +45,7 @@ void fill(Outcome& outcome, const Visited& point, double feasibility_tolerance) 
     outcome.feasible = point.infeasibility <= feasibility_tolerance;
 }
 
+/// The point within the bounds, evaluated (free if known); nothing if it cannot be or the guard has halted.
 std::optional<Visited> visit(Guard& guard, const Vector& x) {
     if (x.size() == 0 || guard.halted()) return std::nullopt;
     const Evaluation& here = guard(x, false);
@@ -56,9 +59,11 @@ bool preferred(const Visited& point, const MemoisedNlp& memo) {
     const double tolerance = memo.limits().feasibility_tolerance;
     if (!(point.infeasibility <= tolerance) || !memo.best_feasible()) return false;
     const double best = memo.best_feasible()->objective;
+    // Multipliers of constraints stand behind the factor; 1e-14 is for a tolerance of zero.
     return point.objective <= best + (10 * tolerance + 1e-14) * std::max(1.0, std::abs(best));
 }
 
+/// Of the certificate at x; infinite where there is no gradient.
 double kkt_residual(Guard& guard, const Vector& x) {
     return certify(guard(x, true), x, guard.nlp().lower(), guard.nlp().upper()).residual;
 }
@@ -92,11 +97,13 @@ Outcome settle(Guard& guard, const SolverAnswer& answer) {
     else if (memo.least_infeasible()) fill(outcome, *memo.least_infeasible(), tolerance);
 
     if (const std::optional<Halt> halt = guard.halt()) {
+        // Circles over known points spend no budget: the method has failed.
         outcome.status = halt->reason() == Halt::Reason::circling ? Status::failed : Status::budget;
         outcome.message = halt->what();
     } else if (solution && answer.claim == SolverAnswer::Claim::optimum) {
         outcome.status = Status::converged;
     } else if (!outcome.feasible && answer.claim != SolverAnswer::Claim::none) {
+        // A claim of an optimum at a point that turns out infeasible is a local minimum of infeasibility at best.
         outcome.status = Status::infeasible;
     } else {
         outcome.status = Status::failed;
@@ -158,6 +165,7 @@ Outcome minimise(Nlp& nlp, const Vector& start, const Options& options) {
     }
     Guard guard(memo);
     SolverAnswer answer;
+    // Ipopt cannot begin without values, and NLopt's methods would model the penalty.
     if (guard(from, true).ok) answer = method->solver(guard, from, options);
     else answer.message = "the start could not be evaluated";
 

@@ -26,6 +26,7 @@ constexpr numerics::NewtonOptions sequence_newton{.max_iterations = 20,
                                                   .max_step = numerics::unlimited,
                                                   .residual_is_relative = false};
 
+/// On the stop, with the speed and the other states of the contact.
 flow::State entry_state(const flow::System& system, const ContactUnknowns& contact) {
     flow::State y{};
     y[0] = system.stop_position();
@@ -46,6 +47,8 @@ double flight_duration(const ContactSequence& sequence, std::size_t i, const Con
 bool plausible(const ContactSequence& sequence, std::size_t i, const ContactUnknowns& closing) {
     const double whole = 2.0 * pi * sequence.period;
     const double flight = flight_duration(sequence, i, closing);
+    // More than one period, because beyond grazing (v < 0, no motion but a point of the smooth branch) the duration of
+    // the contact is negative and the flight longer by as much.
     return std::abs(sequence.contacts[i].duration) < whole && flight > 0.0 && flight < 1.1 * whole;
 }
 
@@ -65,6 +68,9 @@ public:
 
     bool run() { return run_contact() && run_flight(); }
 
+    /// Rows: how the contact closes, then the n states at the end of the flight. The flight starts from the contact's
+    /// end, so derivatives by what the contact began with go through both by the chain rule; its duration is theta' -
+    /// theta - t_c.
     void place(SequenceResidual& out) const {
         const int block = n_ + 1;
         const int row = static_cast<int>(i_) * block;
@@ -88,6 +94,7 @@ public:
             const int r = row + 1 + k;
             const auto& d = flight_.state_d[index(k)];  // lanes: states, phase, parameters
             out.value[r] = flight_.state[index(k)] - wanted[index(k)];
+            // d(end of flight)/d(unknown of the contact in this lane), by way of the state at the contact's end.
             const auto through = [&](int lane_of_contact) {
                 double sum = 0.0;
                 for (int m = 0; m < n_; ++m) {
@@ -101,6 +108,7 @@ public:
             for (int m = 0; m < n_; ++m) { by_end += d[index(m)] * contact_.rate[index(m)]; }
             out.by_unknowns(r, here + at_speed) += through(0);
             for (int m = 2; m < n_; ++m) { out.by_unknowns(r, here + at_rest + m - 2) += through(m - 1); }
+            // A later entry moves contact and flight to a later phase and makes the flight shorter by as much.
             out.by_unknowns(r, here + at_phase) += through(n_ - 1) + by_phase - rate;
             out.by_unknowns(r, here + at_duration) += by_end - rate;
             const auto by_target = [&](int offset, double d_target) {
@@ -119,6 +127,7 @@ public:
     }
 
 private:
+    /// From the entry for the contact's duration with the stop held, so that there is no event to find.
     bool run_contact() {
         const ContactUnknowns& contact = sequence_.contacts[i_];
         std::array<flow::Direction, flow::max_lanes> lanes{};
@@ -128,6 +137,7 @@ private:
         for (std::size_t p = 0; p < directions_.size(); ++p) {
             flow::Direction& lane = lanes[index(n_) + p];
             lane.parameter = directions_[p];
+            // The entry stays on the stop when a parameter moves it.
             lane.state[0] = system_.integrator->stop_position_derivative(system_.parameters, directions_[p]);
         }
         flow::Request request;
@@ -140,6 +150,7 @@ private:
         return contact_.status == flow::Status::ok;
     }
 
+    /// From the end of the contact to the entry of the next one, stop off, likewise without events.
     bool run_flight() {
         const ContactUnknowns& contact = sequence_.contacts[i_];
         std::array<flow::Direction, flow::max_lanes> lanes{};
@@ -165,6 +176,8 @@ private:
         const double gap_rate = gap_slope(duration);
         if (!on_force) { return gap_rate; }
         const double sign = duration < 0.0 ? -1.0 : 1.0;
+        // The residual is force/(k |t| + c), so that it stays of the size of a speed however stiff the stop is;
+        // derivative of the quotient.
         const double scale = k * std::abs(duration) + c;
         const double force_rate = k * contact_.rate[0] + c * contact_.rate[1];
         return force_rate / scale - contact_.divided_force.value * k * sign / scale;
@@ -172,6 +185,7 @@ private:
     /// d/dt of (x(t) - x_stop)/t: (x'(t) - (x - x_stop)/t)/t; its limit x''/2 where t is too small for the quotient.
     [[nodiscard]] double gap_slope(double duration) const {
         const double slope = contact_.rate[0] - contact_.divided_gap.value;
+        // Rounding of the quotient grows as 1e-16/t, the limit is off by the order of t: at 1e-6 both are small.
         if (std::abs(duration) > 1e-6) { return slope / duration; }
         const double w = system_.omega();
         return 0.5 * contact_.rate[1] / w;
@@ -221,6 +235,7 @@ ContactSequence unpack(const flow::System& system, const Vector& z, int period) 
 std::optional<SequenceResidual> evaluate(const flow::System& system, const ContactSequence& sequence,
                                          std::span<const flow::ParameterVector> directions,
                                          const ContactUnknowns* closing) {
+    // The flight's lanes are the states, the phase and the directions: with four states and eight lanes three are left.
     if (directions.size() > 3) { throw std::invalid_argument("contact sequence: more than 3 directions"); }
     const int size = sequence.unknowns(system);
     SequenceResidual out;
@@ -286,12 +301,14 @@ SpeedSolution solve_at_speed(const flow::System& system, const ContactSequence& 
     };
     const auto shot = [&](const Vector& z, Shot& at) {
         const double w = z[at_speed];
+        // A Newton step may lead to a frequency that there is no flow for.
         if (!(w > 0.0)) { return false; }
         auto r = evaluate(system.at_omega(w), with_speed(z), {&by_omega, 1});
         if (!r) { return false; }
         at.by_speed = r->by_unknowns.col(at_speed);
         at.residual = std::move(r->value);
         at.jacobian = std::move(r->by_unknowns);
+        // The column of the speed, which is given, becomes that of the frequency.
         at.jacobian.col(at_speed) = r->by_directions.col(0);
         return true;
     };
@@ -303,6 +320,7 @@ SpeedSolution solve_at_speed(const flow::System& system, const ContactSequence& 
     solution.omega = found.x[at_speed];
     solution.sequence = with_speed(found.x);
     if (!found.ok()) { return solution; }
+    // F_z dz + F_v dv = 0 with the frequency among z.
     solution.tangent = found.factors.solve(-found.at.by_speed);
     solution.slope = solution.tangent[at_speed];
     return solution;

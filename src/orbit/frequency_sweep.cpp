@@ -16,6 +16,7 @@ std::vector<SweptPoint> step_sweep(const flow::System& system, std::span<const d
         point.omega = omega;
         point.settling = settle_until_repeating(here, state, options);
         state = point.settling.state;
+        // Unsettled motions are watched for as long as any period that could have been recognised.
         const int watched = point.settling.settled ? point.settling.period : options.longest_period;
         if (point.settling.status == flow::Status::ok) {
             point.extremes = observe_cycles(here, state, watched, options);

@@ -32,6 +32,7 @@ std::optional<SequenceResidual> shoot_strobed(const flow::System& system, const 
     return out;
 }
 
+/// The equations of a contact sequence, by any number of directions.
 std::optional<SequenceResidual> shoot_sequence(const flow::System& system, const Motion& motion,
                                                std::span<const flow::ParameterVector> directions,
                                                const Motion& closing) {
@@ -50,6 +51,7 @@ std::optional<SequenceResidual> shoot_sequence(const flow::System& system, const
 }
 
 /// The sequence begun with the contact that follows the longest flight.
+/// Contacts that come before it are moved on by one period.
 ContactSequence rotated_to_longest_flight(const ContactSequence& sequence) {
     const std::size_t n = sequence.contacts.size();
     const double whole = 2.0 * pi * sequence.period;
@@ -73,6 +75,7 @@ ContactSequence rotated_to_longest_flight(const ContactSequence& sequence) {
     return rotated;
 }
 
+/// Phase from the end of the last contact to the first one, a period later.
 double flight_before_first(const ContactSequence& sequence) {
     const ContactUnknowns& last = sequence.contacts.back();
     return sequence.contacts.front().phase + 2.0 * pi * sequence.period - last.phase - last.duration;
@@ -120,6 +123,8 @@ Motion unpack(const flow::System& system, const Vector& z, const Motion& like) {
 
 Vector unit_of_unknowns(const flow::System& system, const Motion& motion, double size) {
     const int n = system.states();
+    // Displacements and stretches are of the size of the motion, speeds that times omega, phases and durations of order
+    // 1 rad.
     Vector unit = Vector::Constant(motion.unknowns(system), size);
     if (motion.form != Form::sequence) {
         unit[1] = size * system.omega();
@@ -167,6 +172,8 @@ std::optional<Orbit> strobe(const flow::System& system, const Motion& motion) {
     const ContactSequence sequence = rotated_to_longest_flight(motion.sequence);
     const ContactUnknowns& first = sequence.contacts.front();
     // Backward the flow is unstable in its viscous states: so not further than needed.
+    // A quarter of a cycle clears the contact by enough for the strobe phase; the middle of the flight where that is
+    // shorter.
     const double back = std::min(0.5 * flight_before_first(sequence), 0.5 * pi);
     const auto state = state_at(system, sequence, first.phase - back);
     if (!state) { return std::nullopt; }
@@ -181,6 +188,7 @@ Motion halved_if_symmetric(const flow::System& system, const Motion& motion) {
     Motion half = motion;
     half.mirrored = true;
     const auto r = shoot(system, half, {});
+    // The residual of a motion without the symmetry is its asymmetry; of one with it, what Newton's method has left.
     return r && r->value.norm() < 1e-6 ? half : motion;
 }
 

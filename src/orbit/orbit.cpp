@@ -47,10 +47,13 @@ Orbit find_orbit(const flow::System& system, const ReturnMap& map, const flow::S
 
 numerics::SmallComplexVector multipliers(const Orbit& orbit) {
     numerics::SmallComplexVector values = orbit.monodromy.eigenvalues();
+    // The map of a whole period is the mirrored half-cycle map applied twice.
     if (orbit.map.mirrored) { values = values.array().square().matrix().eval(); }
     std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) {
         const double na = std::abs(a);
         const double nb = std::abs(b);
+        // Of a complex pair the one with the positive imaginary part first: the order must not depend on the eigenvalue
+        // solver.
         return na != nb ? na > nb : a.imag() > b.imag();
     });
     return values;
@@ -64,6 +67,7 @@ std::optional<flow::State> settle(const flow::System& system, const flow::State&
     request.state = from;
     request.duration = 2.0 * pi * cycles;
     request.stop = stop;
+    // A cap, so that chatter ends with a status instead of without end.
     request.max_events = 64 * (cycles + 1);
     flow::Result result;
     system.run(request, result);
@@ -82,6 +86,7 @@ Orbit away_from_contact(const flow::System& system, const Orbit& orbit) {
     for (std::size_t i = 0; i < n; ++i) {
         const double begin = orbit.contacts[i].theta_out;
         const double end = i + 1 < n ? orbit.contacts[i + 1].theta_in : orbit.contacts[0].theta_in + whole;
+        // A contact cut by the strobe phase is followed by no flight yet: its other half is the first of the list.
         if (orbit.contacts[i].open_out) { continue; }
         if (end - begin > longest) {
             longest = end - begin;
@@ -115,12 +120,15 @@ Portrait portray(const flow::System& system, const Orbit& orbit, std::span<const
     Portrait portrait;
     const int n = system.states();
     ReturnMap map = orbit.map;
+    // Newton's method does with derivative series that stop four orders early, which is 1.7 times cheaper; gradients
+    // that are reported do not.
     map.precise = true;
     portrait.image = apply(system, map, orbit.state, Differentiate::all, directions, observe);
     portrait.status = portrait.image.status;
     if (!portrait.ok()) { return portrait; }
     portrait.monodromy = portrait.image.derivative.leftCols(n);
     portrait.residual = (to_vector(system, portrait.image.state) - to_vector(system, orbit.state)).norm();
+    // Implicit differentiation of P(y, p) = y: (I - M) dy/dp = dP/dp.
     const SmallMatrix jacobian = SmallMatrix::Identity(n, n) - portrait.monodromy;
     portrait.d_state =
         jacobian.partialPivLu().solve(portrait.image.derivative.rightCols(static_cast<int>(directions.size())));
@@ -132,13 +140,16 @@ ErrorEstimate estimate_errors(const flow::System& tighter, const Orbit& orbit, c
     ErrorEstimate estimate;
     const int n = tighter.states();
     const Image image = apply(tighter, orbit.map, orbit.state, Differentiate::nothing, {}, observe);
+    // (I - M) dy = P_tighter(y) - y: how far the orbit moves when the integration error is taken away.
     const SmallMatrix jacobian = SmallMatrix::Identity(n, n) - portrait.monodromy;
     const SmallVector correction =
         jacobian.partialPivLu().solve(to_vector(tighter, image.state) - to_vector(tighter, orbit.state));
+    // No estimate below rounding: where both integrators are that exact their difference may vanish by chance.
     constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
     estimate.state = correction.norm() + rounding;
     for (std::size_t q = 0; q < observable_count; ++q) {
         const Observed& o = portrait.image.observed[q];
+        // Along the orbit, not at the old state: the observable there and what the correction of the state adds.
         double moved = image.observed[q].value - o.value;
         double spread = 0.0;
         for (int k = 0; k < n; ++k) {

@@ -35,6 +35,8 @@ void collect(const flow::Result& result, int states, int first, int lanes, std::
     }
 }
 
+/// The image and everything with it replaced by its mirror image about the centre: x -> 2 centre - x, internal states
+/// exchanged or with their sign changed, as the actuator's table says. The centre may move with the parameters.
 void apply_mirror(const flow::System& system, std::span<const flow::ParameterVector> directions, Image& image) {
     const flow::SystemInfo& info = system.integrator->info();
     const flow::State y = image.state;
@@ -77,8 +79,11 @@ Image apply(const flow::System& system, const ReturnMap& map, const flow::State&
     request.stop = map.stop;
     request.observe = observe;
     request.full_derivatives = map.precise;
+    // A cap, so that chatter ends with a status instead of without end.
     request.max_events = 256 * std::max(1, map.period);
     flow::Result result;
+    // At most max_lanes columns in one run, so more take several; without columns there is still one run. Step control
+    // sees the lanes, so the values of two blocks may differ in their last digits: those of the last one are kept.
     for (int first = 0; first == 0 || first < columns; first += flow::max_lanes) {
         std::array<flow::Direction, flow::max_lanes> block{};
         const int lanes = std::min(flow::max_lanes, columns - first);

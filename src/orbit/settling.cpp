@@ -15,6 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
+/// Drive cycles; the ring of strobed states holds so many and the present one.
 constexpr int longest_recognised = 12;
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 
@@ -48,6 +49,8 @@ struct Distance {
     double contraction = absent;
 };
 
+/// error: |(I - M)^-1 (P(y) - y)| relative to 1 + |y|, nondimensional, with P the map of p cycles and M its derivative
+/// at y; contraction: the spectral radius of M. Both absent when the flow failed.
 Distance distance_from_orbit(const flow::System& system, const flow::State& state, int p) {
     ReturnMap map;
     map.period = p;
@@ -94,6 +97,7 @@ public:
     }
 
 private:
+    /// By the rule of the options; looks at the remaining error only when it may have become small enough.
     bool is_near(const Strobes& strobes, int p, Settling& settling) {
         if (options_.rule == SettlingRule::strobed_change) { return true; }
         int& next = next_look_[static_cast<std::size_t>(p)];
@@ -103,12 +107,17 @@ private:
         settling.remaining_error = distance.error;
         const bool stable = distance.contraction < 1.0;
         if (stable && distance.error <= options_.tolerance) { return true; }
+        // Beside an unstable orbit the motion only passes: nothing tells for how long, so it is looked at again after
+        // one period.
         next = settling.cycles + p * (stable ? periods_to_go(distance) : 1);
         return false;
     }
 
     /// Looking costs several cycles; it is worth while again when the error may have shrunk enough.
     [[nodiscard]] int periods_to_go(const Distance& distance) const {
+        // The error shrinks by the largest multiplier each period. 0.9: rather a little early. At most 50: far from the
+        // orbit neither number holds for longer, and without a bound a multiplier beside 1 would put the next look off
+        // for ever.
         const double periods = std::log(options_.tolerance / distance.error) / std::log(distance.contraction);
         return static_cast<int>(std::clamp(std::ceil(0.9 * periods), 1.0, 50.0));
     }
@@ -119,6 +128,7 @@ private:
 };
 
 void check(const SettlingOptions& options) {
+    // Strobed states carry the rounding of a whole cycle: changes below this are never reached reliably.
     if (!(options.tolerance > 1e-12)) { throw std::invalid_argument("settling tolerance: allowed is above 1e-12"); }
     if (options.longest_period < 1 || options.longest_period > longest_recognised) {
         throw std::invalid_argument("settling longest_period = " + std::to_string(options.longest_period) +
@@ -127,6 +137,7 @@ void check(const SettlingOptions& options) {
     if (options.max_cycles < 1) { throw std::invalid_argument("settling max_cycles: allowed is at least 1"); }
 }
 
+/// So many drive cycles from phase 0, with the limits of the options for each.
 flow::Request cycles_from(const flow::State& state, int cycles, const SettlingOptions& options) {
     flow::Request request;
     request.state = state;
@@ -188,6 +199,7 @@ Extremes observe_cycles(const flow::System& system, const flow::State& start, in
     extremes.x_max = result.observables.x_max.value;
     extremes.x_min = result.observables.x_min.value;
     extremes.peak_force = result.observables.peak_force.value;
+    // A contact that was open at the beginning was counted in the cycle before.
     extremes.contacts = static_cast<int>(std::count_if(result.contacts.begin(), result.contacts.end(),
                                                        [](const flow::Contact& c) { return !c.open_in; }));
     return extremes;
