@@ -8,9 +8,11 @@
 namespace percuss::kernels {
 namespace {
 
+/// Room for the order of the tightest tolerance that is allowed: 1e-16 asks for order 21.
 constexpr int max_order = 24;
 
 template <class T>
+/// Derivative along direction i; zero for scalars that carry none.
 double lane(const T& a, std::size_t i) {
     if constexpr (numerics::ScalarTraits<T>::lanes > 0) {
         return a.d[i];
@@ -20,6 +22,7 @@ double lane(const T& a, std::size_t i) {
 }
 
 template <class T>
+/// The value in double precision with its derivatives.
 flow::Sensitive sensitive(const T& a) {
     flow::Sensitive result;
     result.value = numerics::base(a);
@@ -35,6 +38,7 @@ void seed([[maybe_unused]] T& target, [[maybe_unused]] std::size_t i, [[maybe_un
 }
 
 template <class Jet>
+/// Values of a state, its derivatives left out.
 flow::State plain(const typename Jet::State& y) {
     flow::State state{};
     for (std::size_t k = 0; k < y.size(); ++k) { state[k] = numerics::base(y[k]); }
@@ -93,6 +97,7 @@ void report_observables(const flow::SeriesObserver<Jet>& observer, std::uint32_t
 }
 
 template <class Jet>
+/// One run: seeds a lane per direction, follows the flow, and takes what the scalars of the jet carry into the result.
 void kernel(const flow::ParameterVector& parameters, const TaylorSettings& settings, const flow::Request& request,
             flow::Result& result) {
     using T = typename Jet::Scalar;
@@ -121,14 +126,17 @@ void kernel(const flow::ParameterVector& parameters, const TaylorSettings& setti
     }
     if (result.status == flow::Status::ok) {
         Jet& jet = run.jet();
+        // Order 1 is all that d(state)/d(theta) at the end needs.
         jet.expand(run.theta_at(), run.touching(), 1);
         const auto rate = jet.rate();
         for (std::size_t k = 0; k < rate.size(); ++k) { result.rate[k] = rate[k]; }
         if (request.stop == flow::StopMode::held) {
+            // k (x - x_stop) from the divided gap: the difference itself loses its digits as the contact gets short.
             const double duration = std::abs(request.duration);
             const T force = jet.stop_stiffness() * run.divided_gap() * request.duration + jet.stop_damping() * y[1];
             result.divided_gap = sensitive(run.divided_gap());
             const T scale = jet.stop_stiffness() * duration + jet.stop_damping();
+            // Without damping the unit k |duration| is zero at duration zero, and so is the force.
             if (numerics::base(scale) > 0.0) { result.divided_force = sensitive(force / scale); }
         }
     }
