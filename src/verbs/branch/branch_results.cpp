@@ -217,6 +217,7 @@ std::string branch_document(const ProblemFile& problem, const BranchResult& resu
         for (std::size_t i = 0; i < boundaries.size(); ++i) {
             out["boundaries"].push_back(boundary_of(problem, result, b, i));
             const int partner = boundaries[i].partner;
+            // Partners point at each other; each pair is told once.
             if (partner > static_cast<int>(i)) {
                 const auto& other = boundaries[static_cast<std::size_t>(partner)];
                 const UserPoint user = to_user(problem, result, boundaries[i].point);
