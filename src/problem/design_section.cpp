@@ -24,6 +24,8 @@ bool take_last_word(std::string_view& text, std::string_view word) {
     return true;
 }
 
+/// A bound of a variable in the base unit, which must be a value that the key itself may have: each design of the range
+/// is evaluated. Throws std::invalid_argument.
 double parse_bound(model::Key key, std::string_view text) {
     const model::KeyInfo& info = model::key_info(key);
     const double value = parse_key_value(key, text);
@@ -65,6 +67,7 @@ design::DesignVariable parse_variable(const Setting& setting, const model::Actua
     if (dots == std::string_view::npos) { throw bad_value(setting, std::string(form)); }
     std::string_view upper = trimmed(text.substr(dots + 2));
     design::DesignVariable variable;
+    // Either order, each word at most once: a second one stays in the text and is refused with it.
     while (true) {
         if (!variable.logarithmic && take_last_word(upper, "log")) {
             variable.logarithmic = true;
@@ -83,6 +86,7 @@ design::DesignVariable parse_variable(const Setting& setting, const model::Actua
     } catch (const std::invalid_argument& error) {
         throw bad_value(setting, error.what());
     } catch (const ProblemError& error) { throw bad_value(setting, error.what()); }
+    // An integer range may hold one number; a real one would leave the optimiser a variable without room.
     const bool single_value = variable.integer && variable.lower == variable.upper;
     if (!(variable.lower < variable.upper || single_value)) {
         throw bad_value(setting, "the range is reversed or empty: LOWER must be below UPPER");
@@ -103,6 +107,7 @@ void add_variable(const Setting& setting, design::Problem& problem) {
     if (std::any_of(problem.variables.begin(), problem.variables.end(), same)) {
         throw bad_value(setting, "this key is a variable already");
     }
+    // It would have no effect: gradients of zero, and an optimum that means nothing.
     if (model::is_of_stop(variable.key) && !model::has_stop(problem.actuator.law)) {
         throw bad_value(setting, "stop.law = none: there is no stop to vary");
     }
@@ -140,6 +145,7 @@ design::Limit parse_limit(const Setting& setting, const model::Actuator& family)
     const std::string_view text = trimmed(setting.value);
     const auto at_most = text.find("<=");
     const auto at_least = text.find(">=");
+    // npos is larger than any place, so this is the one that is there, or the first of both.
     const auto position = std::min(at_most, at_least);
     if (position == std::string_view::npos) {
         throw bad_value(setting, "expected QUANTITY <= VALUE or QUANTITY >= VALUE");
