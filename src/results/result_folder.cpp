@@ -44,11 +44,13 @@ ResultFolder::ResultFolder(fs::path path, std::string verb, std::string problem_
     manifest_.problem = std::move(problem_name);
     manifest_.hash = std::move(hash);
     if (path_.empty()) { throw problem::ProblemError("--out '': give the name of a folder, or none"); }
+    // Before anything is computed; whoever gets the lock is decided in start().
     if (FolderLock::is_taken(path_)) { throw in_use(path_); }
     look();
 }
 
 ResultFolder::~ResultFolder() {
+    // The run ended by an exception: what it wrote is no result and would be taken for one.
     if (started_ && !finished_) {
         remove_files(manifest_.files);
         remove_files({manifest_name});
@@ -87,6 +89,7 @@ void ResultFolder::look() {
 
 void ResultFolder::create() {
     std::error_code error;
+    // Innermost first: in this order they can be removed again.
     for (fs::path each = path_; !each.empty() && !fs::exists(each, error); each = each.parent_path()) {
         created_.push_back(each);
     }
@@ -98,6 +101,7 @@ void ResultFolder::start(std::vector<std::string> files, const problem::ProblemF
     create();
     if (!lock_.take(path_)) { throw in_use(path_); }
     look();  // another run may have come and gone since the constructor looked
+    // Only what the old manifest lists: files that somebody else put there stay.
     remove_files(old_files_);
     started_ = true;
     manifest_.files = std::move(files);
@@ -112,6 +116,7 @@ void ResultFolder::remove_created() const {
 }
 
 void ResultFolder::write(const std::string& name, const std::string& content) const {
+    // Written beside and renamed: a reader sees the old file or the new one, never half of it.
     const fs::path partial = path_ / (name + std::string(partial_ending));
     std::ofstream stream(partial, std::ios::binary);
     stream << content;
@@ -126,6 +131,7 @@ std::unique_ptr<RowSink> ResultFolder::table(const std::string& name) const {
 
 void ResultFolder::finish(RunState state, const problem::ProblemFile& problem, const RunRecord& record) {
     manifest_.state = state;
+    // Tables of a run that ended early may not have come to be.
     std::erase_if(manifest_.files, [&](const std::string& name) { return !fs::exists(path_ / name); });
     write(manifest_name, manifest_document(manifest_, problem, record));
     finished_ = true;
@@ -137,6 +143,7 @@ void ResultFolder::remove_files(const std::vector<std::string>& files) const {
         if (is_plain_name(name)) {
             std::error_code error;
             fs::remove(path_ / name, error);
+            // A run that was killed leaves partial files.
             fs::remove(path_ / (name + std::string(partial_ending)), error);
         }
     }
