@@ -46,6 +46,7 @@ flow::State plain(const typename Jet::State& y) {
 }
 
 template <class Jet>
+/// Contacts in the order in which they were met, in double precision.
 void report_contacts(const flow::SeriesObserver<Jet>& observer, flow::Result& result) {
     for (const auto& record : observer.contacts()) {
         flow::Contact contact;
@@ -61,6 +62,7 @@ void report_contacts(const flow::SeriesObserver<Jet>& observer, flow::Result& re
 }
 
 template <class Jet>
+/// What the mask asked for; the rest stays zero.
 void report_observables(const flow::SeriesObserver<Jet>& observer, std::uint32_t mask, flow::Observables& out) {
     if ((mask & flow::observe_extrema) != 0U) {
         out.x_max = sensitive(observer.x_max().value);
