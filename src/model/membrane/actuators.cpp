@@ -180,6 +180,8 @@ void check_maxwell_branch(const Specification& spec, Key modulus, Key viscosity,
     }
 }
 
+/// Appends what is wrong between keys: a frame no wider than the disk, a stop that presses at rest (which this scaling
+/// and the symmetry of the free motion do not cover), a branch without viscosity.
 void check_si(const Specification& spec, std::vector<std::string>& found) {
     const double inner = spec.value(key::inner_radius);
     const double outer = spec.value(key::outer_radius);
