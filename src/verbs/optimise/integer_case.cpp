@@ -95,6 +95,7 @@ struct Report {
     std::vector<LimitReport> limits{};
 };
 
+/// The limits of the problem in their own units.
 void add_limits(Report& r) {
     for (std::size_t i = 0; i < r.problem.limits.size(); ++i) {
         const design::Limit& limit = r.problem.limits[i];
@@ -112,6 +113,7 @@ void add_limits(Report& r) {
     }
 }
 
+/// The windows kept off, as limits on omega; those that have vanished at the best design are left out.
 void add_windows(Report& r) {
     const model::Specification spec = r.nlp.specification(r.best.x);
     for (std::size_t i = 0; i < r.best.exclusions.size(); ++i) {
@@ -135,6 +137,7 @@ void add_windows(Report& r) {
     }
 }
 
+/// Only bounds that the best design lies on: the others say nothing.
 void add_active_bounds(Report& r) {
     const auto& variables = r.nlp.continuous();
     for (std::size_t j = 0; j < variables.size(); ++j) {

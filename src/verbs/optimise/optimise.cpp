@@ -17,6 +17,7 @@ namespace {
 using design::Quantity;
 using optimise::Vector;
 
+/// Throws std::invalid_argument for what a gradient method cannot work on.
 void check(const StudyProblem& problem) {
     const design::Problem& d = problem.design;
     if (d.variables.empty()) { throw std::invalid_argument("design.variable: optimise needs at least one"); }

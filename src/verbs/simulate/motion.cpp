@@ -12,6 +12,7 @@ constexpr int patience = 2000;  // drive cycles
 /// Settled points of the sweep of wu2022-nondimensional lie within 1e-7 of their orbits.
 constexpr double near_enough = 1e-5;  // of a settled state to its orbit, and of two states of one motion, relative
 
+/// Newton's method from the settled state, nondimensional; changes nothing unless it ends at the motion that was there.
 void polish(const flow::System& system, SettledMotion& motion) {
     const orbit::Orbit found = orbit::polish_orbit(system, motion.own_state, motion.period);
     if (!found.ok()) { return; }

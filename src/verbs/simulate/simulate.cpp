@@ -239,6 +239,7 @@ double change_over(const flow::System& system, const Strobes& strobes, int perio
     return orbit::relative_distance(system, strobes[strobes.size() - 1 - back], strobes.back());
 }
 
+/// fell or rose: to a motion with the smaller or larger peak force.
 KickOutcome outcome_of(const flow::System& system, const SettledMotion& before, const SettledMotion& after) {
     if (!before.settled || !after.settled) { return KickOutcome::undecided; }
     if (same_motion(system, before, after)) { return KickOutcome::recovered; }

@@ -64,6 +64,7 @@ struct Sweep {
     }
 };
 
+/// What was seen of a motion; omega stays nondimensional. Extremes stay absent where the flow was lost.
 SweepPoint in_user_units(double omega, const orbit::Extremes& extremes, const model::Scales& scales) {
     SweepPoint point;
     point.omega = omega;
@@ -77,6 +78,7 @@ SweepPoint in_user_units(double omega, const orbit::Extremes& extremes, const mo
     return point;
 }
 
+/// The same with how it settled; without a settled motion the period is 0.
 SweepPoint in_user_units(const orbit::SweptPoint& swept, const model::Scales& scales, int states) {
     SweepPoint point = in_user_units(swept.omega, swept.extremes, scales);
     point.cycles = swept.settling.cycles;
@@ -151,6 +153,7 @@ void chirp(Sweep& sweep, const flow::System& system, const flow::State& rest, Sw
     direction.jumps = find_chirp_jumps(direction.points);
 }
 
+/// One direction, from rest. It has its own cost, so a limit ends each by itself.
 SweepDirection go(Sweep& sweep, bool forward) {
     SweepDirection direction;
     direction.forward = forward;
@@ -178,6 +181,7 @@ std::vector<SweepDirection> go_both_ways(Sweep& sweep, int jobs) {
     return directions;
 }
 
+/// Ends of the sweep as nondimensional omega. Throws std::invalid_argument for an empty range.
 void set_range(Sweep& sweep) {
     const double resonance = sweep.integrators.own->linear_resonance(sweep.scaled.parameters);
     const double unit = sweep.scaled.scales.time;
@@ -241,6 +245,7 @@ void write(const SweepResult& result, const StudyProblem& problem, SweepMode mod
     }
 }
 
+/// An interruption is told before a trouble, and of two troubles the first.
 void conclude(const Sweep& sweep, SweepResult& result) {
     long points = 0;
     for (const SweepDirection& direction : result.directions) {
