@@ -55,6 +55,7 @@ std::vector<Echo> key_echo(const model::Specification& spec, Key key) {
     return {};
 }
 
+/// The row of a key of the model: range, unit and default from its KeyInfo.
 Row key_row(Key key) {
     const model::KeyInfo& info = model::key_info(key);
     const std::string edge = model::is_frequency(key) ? "edge" : "";

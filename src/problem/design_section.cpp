@@ -59,6 +59,7 @@ void refuse_half_a_unit(const model::KeyInfo& info, std::string_view lower, std:
                                 std::string(info.unit) + ": write " + with_unit(lower) + " .. " + with_unit(upper));
 }
 
+/// "KEY in LOWER .. UPPER [log] [integer]" with bounds in base units. Throws ProblemError.
 design::DesignVariable parse_variable(const Setting& setting, const model::Actuator& family) {
     constexpr std::string_view form = "expected KEY in LOWER .. UPPER [log] [integer]";
     const std::string_view text = trimmed(setting.value);
@@ -114,6 +115,7 @@ void add_variable(const Setting& setting, design::Problem& problem) {
     problem.variables.push_back(variable);
 }
 
+/// A quantity that this actuator has. Throws ProblemError with the nearest name or why there is none.
 Quantity parse_quantity_name(const Setting& setting, std::string_view name, const model::Actuator& family) {
     std::vector<std::string> names;
     for (const Quantity quantity : design::reported_quantities(family)) {
@@ -129,6 +131,7 @@ Quantity parse_quantity_name(const Setting& setting, std::string_view name, cons
     return *quantity;
 }
 
+/// Throws ProblemError for a quantity without gradient or one that is an objective already.
 void add_objective(const Setting& setting, bool maximise, design::Problem& problem) {
     const auto quantity = parse_quantity_name(setting, trimmed(setting.value), *problem.actuator.type);
     if (!design::quantity_info(quantity).smooth) {
@@ -141,6 +144,7 @@ void add_objective(const Setting& setting, bool maximise, design::Problem& probl
     problem.objectives.push_back({quantity, maximise});
 }
 
+/// "QUANTITY <= VALUE" or ">=", the bound in the unit of the quantity. Throws ProblemError.
 design::Limit parse_limit(const Setting& setting, const model::Actuator& family) {
     const std::string_view text = trimmed(setting.value);
     const auto at_most = text.find("<=");
@@ -226,6 +230,7 @@ std::vector<Echo> variables_echo(const design::Problem& problem) {
     return out;
 }
 
+/// Bounds in print are rounded; `exact` is what the hash is made of.
 std::vector<Echo> limits_echo(const design::Problem& problem) {
     const bool plain = problem.actuator.type->nondimensional;
     std::vector<Echo> out;

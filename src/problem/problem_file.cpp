@@ -33,6 +33,7 @@ bool is_known_trouble(const Troubles& troubles, const std::string& violation) {
     });
 }
 
+/// What can be said of the values without computing, apart from what reading complained of already.
 void check_values(const design::Problem& problem, FrequencyUse use, Troubles& troubles) {
     for (const std::string& violation : model::violations(problem.actuator)) {
         if (!is_known_trouble(troubles, violation)) { troubles.add(violation); }

@@ -32,6 +32,7 @@ po::options_description describe_keys(std::span<const Section> sections) {
     return description;
 }
 
+/// Every name that may be meant by a misspelt one.
 std::vector<std::string> known_names(std::span<const Section> sections, std::span<const RunOption> run_options) {
     std::vector<std::string> names;
     for (const Section& section : sections) {
@@ -53,6 +54,7 @@ void refuse_repetitions(std::span<const Setting> settings, std::span<const Secti
     }
 }
 
+/// The file as the parser can read it. Throws ProblemError for what is not a readable file of a sensible size.
 std::string read_text(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
