@@ -32,6 +32,7 @@ Writer to_writer(const Json& json) {
         json.value());
 }
 
+/// The way back; whatever else the library knows (binary, discarded) becomes null.
 Json from_reader(const Writer& in) {
     if (in.is_object()) {
         Json out = Json::object();

@@ -24,6 +24,7 @@ std::string_view state_text(RunState state) {
     return "unknown";
 }
 
+/// Every setting as it counted, defaults too, in base units: a run can be repeated from the manifest.
 Json settings_of(const problem::ProblemFile& problem) {
     Json out = Json::array();
     for (const problem::ResolvedSetting& setting : problem.settings) {

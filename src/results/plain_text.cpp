@@ -63,6 +63,7 @@ void narrow(std::vector<std::size_t>& widths, std::size_t width) {
     }
 }
 
+/// width 0: as wide as the cells are.
 void append_table(const Block& block, std::size_t width, std::string& text) {
     std::vector<std::size_t> widths(block.columns.size());
     for (std::size_t i = 0; i < widths.size(); ++i) {
