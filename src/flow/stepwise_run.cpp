@@ -18,7 +18,7 @@ constexpr double shortest_duration = 1e-60;
 /// Whether the run is to end early is asked every so many steps; a step takes some ten microseconds.
 constexpr long steps_between_questions = 64;
 
-/// Values, lanes and integrals alike: a NaN in a lane alone would be found nowhere else.
+/// Whether every number of the run is finite: values, lanes and integrals alike.
 bool all_finite(const AugmentedSystem& system, const Extended& y) {
     for (int i = 0; i < system.size(); ++i) {
         if (!std::isfinite(y[at(i)])) { return false; }

@@ -127,7 +127,8 @@ private:
         double h = 1e300;
         for (int j : {order_ - 1, order_}) {
             const double c = static_cast<double>(jet_.norm(j)) / scale;
-            // NaN fails both. States of 1e6 mean that the motion left: they are of order one by scaling.
+            // A coefficient that is NaN fails the first test. States of 1e6 mean that the motion left: they are of
+            // order one by scaling.
             if (!(c < 1e300) || !(scale < 1e6)) {
                 status_ = Status::diverged;
                 step_ = 0;
