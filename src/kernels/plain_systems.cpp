@@ -176,8 +176,8 @@ private:
     model::ContactLaw law_;
 };
 
-template <class... S>
 /// The plain system of the scene at this index of the list.
+template <class... S>
 std::shared_ptr<const flow::RightHandSide> make(model::SceneList<S...>, std::size_t index, model::ContactLaw law) {
     using Maker = std::shared_ptr<const flow::RightHandSide> (*)(model::ContactLaw);
     constexpr std::array<Maker, sizeof...(S)> makers = {
@@ -187,8 +187,8 @@ std::shared_ptr<const flow::RightHandSide> make(model::SceneList<S...>, std::siz
     return makers.at(index)(law);
 }
 
-template <class... S>
 /// Place of a scene in the list, told by its address. Throws std::invalid_argument for one that is not in it.
+template <class... S>
 std::size_t index_in(model::SceneList<S...>, const model::Scene& scene) {
     const std::array<const model::Scene*, sizeof...(S)> listed = {&S::Plain::scene...};
     const auto found = std::find(listed.begin(), listed.end(), &scene);

@@ -11,8 +11,8 @@ namespace {
 /// Room for the order of the tightest tolerance that is allowed: 1e-16 asks for order 21.
 constexpr int max_order = 24;
 
-template <class T>
 /// Derivative along direction i; zero for scalars that carry none.
+template <class T>
 double lane(const T& a, std::size_t i) {
     if constexpr (numerics::ScalarTraits<T>::lanes > 0) {
         return a.d[i];
@@ -21,8 +21,8 @@ double lane(const T& a, std::size_t i) {
     }
 }
 
-template <class T>
 /// The value in double precision with its derivatives.
+template <class T>
 flow::Sensitive sensitive(const T& a) {
     flow::Sensitive result;
     result.value = numerics::base(a);
@@ -37,16 +37,16 @@ void seed([[maybe_unused]] T& target, [[maybe_unused]] std::size_t i, [[maybe_un
     if constexpr (numerics::ScalarTraits<T>::lanes > 0) { target.d.set(i, value); }
 }
 
-template <class Jet>
 /// Values of a state, its derivatives left out.
+template <class Jet>
 flow::State plain(const typename Jet::State& y) {
     flow::State state{};
     for (std::size_t k = 0; k < y.size(); ++k) { state[k] = numerics::base(y[k]); }
     return state;
 }
 
-template <class Jet>
 /// Contacts in the order in which they were met, in double precision.
+template <class Jet>
 void report_contacts(const flow::SeriesObserver<Jet>& observer, flow::Result& result) {
     for (const auto& record : observer.contacts()) {
         flow::Contact contact;
@@ -61,8 +61,8 @@ void report_contacts(const flow::SeriesObserver<Jet>& observer, flow::Result& re
     }
 }
 
-template <class Jet>
 /// What the mask asked for; the rest stays zero.
+template <class Jet>
 void report_observables(const flow::SeriesObserver<Jet>& observer, std::uint32_t mask, flow::Observables& out) {
     if ((mask & flow::observe_extrema) != 0U) {
         out.x_max = sensitive(observer.x_max().value);
@@ -98,8 +98,8 @@ void report_observables(const flow::SeriesObserver<Jet>& observer, std::uint32_t
     }
 }
 
-template <class Jet>
 /// One run: seeds a lane per direction, follows the flow, and takes what the scalars of the jet carry into the result.
+template <class Jet>
 void kernel(const flow::ParameterVector& parameters, const TaylorSettings& settings, const flow::Request& request,
             flow::Result& result) {
     using T = typename Jet::Scalar;
