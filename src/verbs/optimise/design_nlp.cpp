@@ -101,8 +101,8 @@ optimise::Evaluation DesignNlp::translate(const design::Evaluation& evaluation, 
     optimise::Evaluation out;
     if (evaluation.status != design::EvaluationStatus::ok) { return out; }
     const bool must_be_alone = problem().single_stable != design::SingleStable::off;
-    // A design that is known not to be alone counts as one that cannot be evaluated: there is no gradient that leads
-    // away from it.
+    // A design whose motion is not known to be alone counts as one that cannot be evaluated: there is no gradient that
+    // leads away from it.
     if (must_be_alone && evaluation.uniqueness.verdict != design::Verdict::unique) { return out; }
     const int n = variables();
     const int m = constraints();

@@ -55,7 +55,7 @@ void TimeSeries::write_headers() {
 }
 
 bool TimeSeries::advance(double position) {
-    // As for starts of ensembles, some of which a limit of 128 gave up among those of 2000 random designs.
+    // As for starts of ensembles: a limit of 128 gave some of them up in a brute-force check of random designs.
     constexpr int events_per_cycle = 1024;
     flow::Request request;
     request.state = state_;
