@@ -12,6 +12,9 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// Smallest natural size of the overlap in a held run: its rounding errors are of this order times those of one.
 constexpr double smallest_overlap = 1e-6;
 
+/// By how much a direction moves what it moves: states and the phase as they are (of order one by scaling), parameters
+/// relative to their size, those below one absolutely because a parameter may be zero. One for a direction that moves
+/// nothing, since tolerances are multiplied by it.
 double size_of(const Direction& direction, const ParameterVector& parameters) {
     double size = std::abs(direction.phase);
     for (const double d : direction.state) { size = std::max(size, std::abs(d)); }
@@ -44,6 +47,8 @@ AugmentedSystem::AugmentedSystem(const RightHandSide& rhs, const ParameterVector
     places_.count = next - states_;
 
     if (request.stop == StopMode::held) {
+        // (x - x_stop)/duration is what a held run is asked for, so the overlap must be as accurate relative to the
+        // duration as all else is relative to one.
         overlap_size_ = std::clamp(std::abs(request.duration), smallest_overlap, 1.0);
     }
     const bool has_stop = model::has_stop(rhs.contact_law());
@@ -73,6 +78,7 @@ Extended AugmentedSystem::initial(const State& start) const {
         entry(y, 0, i) = start[at(i)];
         for (int lane = 0; lane < lanes_; ++lane) { entry(y, 1 + lane, i) = start_lanes_[at(lane)][at(i)]; }
     }
+    // The surface moves with the parameters too, hence its derivatives in the lanes.
     entry(y, 0, 0) -= origin_;
     for (int lane = 0; lane < lanes_; ++lane) { entry(y, 1 + lane, 0) -= origin_d_[at(lane)]; }
     return y;
@@ -119,6 +125,7 @@ void AugmentedSystem::state_rates(double t, const Columns& states, bool touching
 }
 
 void AugmentedSystem::integral_rate(double t, const double* values, bool touching, double* out) const {
+    // Integrals are over tau, the independent variable is theta: d(tau) = d(theta)/omega.
     const double per_phase = 1.0 / omega();
     if (places_.impulse >= 0) {
         const double force = touching ? stiffness() * values[0] + damping() * values[1] : 0.0;
@@ -141,6 +148,7 @@ void AugmentedSystem::integral_rate(double t, const double* values, bool touchin
 }
 
 void AugmentedSystem::integral_rates(double t, const Columns& states, bool touching, const MutableColumns& out) const {
+    // d(rate/omega) = d(rate)/omega - (rate/omega) d(omega)/omega, whose last factor is `slowing` below.
     const double per_phase = 1.0 / omega();
     const double* y = states[0];
     if (places_.impulse >= 0) {
@@ -211,6 +219,7 @@ void AugmentedSystem::rates(double t, const double* y, bool touching, double* ou
 
 void AugmentedSystem::jacobian(double t, const double* values, bool touching, double* out) const {
     ++evaluations_;
+    // One direction per state: the exact derivative, for the corrector of an implicit method.
     std::array<Direction, at(max_states)> unit{};
     for (int i = 0; i < states_; ++i) { unit[at(i)].state[at(i)] = 1.0; }
     State rate{};

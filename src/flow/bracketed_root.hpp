@@ -27,6 +27,7 @@ inline double first_guess(const RootEnd& a, const RootEnd& b) {
     const double h = b.at - a.at;
     const double f0 = a.sample.value;
     const double f1 = b.sample.value;
+    // The straight line; s runs from 0 at a to 1 at b.
     double s = f0 / (f0 - f1);
     const double d0 = a.sample.slope * h;
     const double d1 = b.sample.slope * h;
@@ -35,6 +36,8 @@ inline double first_guess(const RootEnd& a, const RootEnd& b) {
         const double c3 = d0 + d1 - 2.0 * (f1 - f0);
         double low = 0.0;
         double high = 1.0;
+        // Newton on the cubic, kept inside a bracket. Bisection alone would reach 1e-6 in 20 steps, and this is only
+        // the first guess for the polishing that follows.
         for (int i = 0; i < 20; ++i) {
             const double f = f0 + s * (d0 + s * (c2 + s * c3));
             (opposite_signs(f, f1) ? low : high) = s;
@@ -52,8 +55,11 @@ inline double first_guess(const RootEnd& a, const RootEnd& b) {
 template <class Function>
 double bracketed_root(RootEnd a, RootEnd b, Function&& function) {
     double t = first_guess(a, b);
+    // The secant needs a second point from the beginning: the end that is nearer to the root.
     RootEnd previous = std::abs(a.sample.value) < std::abs(b.sample.value) ? a : b;
     double last_move = std::abs(b.at - a.at);
+    // Bisection alone takes some 52 halvings to the spacing of numbers of one size, a few more towards a root near
+    // zero.
     for (int i = 0; i < 100; ++i) {
         const RootEnd current{t, function(t)};
         if (current.sample.value == 0.0) { return t; }
@@ -66,6 +72,8 @@ double bracketed_root(RootEnd a, RootEnd b, Function&& function) {
         const double low = std::min(a.at, b.at);
         const double high = std::max(a.at, b.at);
         double next = t + step;
+        // A step out of the bracket, or one longer than half of the last bracket, does not converge (Newton circling an
+        // inflection, a secant across one): bisect. NaN fails all three comparisons and is bisected too.
         if (!(next >= low && next <= high) || !(std::abs(step) <= last_move)) { next = 0.5 * (low + high); }
         last_move = 0.5 * std::abs(b.at - a.at);
         const double spacing = 2.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));

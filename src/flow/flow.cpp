@@ -25,6 +25,7 @@ std::string_view to_string(Status status) {
 void append_contact(Result& result, const Contact& contact) { result.contacts.push_back(contact); }
 
 void reset(Result& result) {
+    // A result used run after run keeps its memory.
     std::vector<Contact> storage = std::move(result.contacts);
     storage.clear();
     result = Result{};
@@ -86,6 +87,8 @@ void System::run(const Request& request, Result& result) const {
     limited.max_steps = std::min(request.max_steps, cost->step_budget - cost->steps);
     if (limited.cancelled == nullptr) { limited.cancelled = &cost->cancelled; }
     integrator->run(parameters, limited, result);
+    // Whose limit it was decides what the caller does: a run that is too long by itself is a failed motion, a spent
+    // budget ends the evaluation.
     if (result.status == Status::too_many_steps && limited.max_steps < request.max_steps) {
         result.status = Status::budget_spent;
     }
@@ -105,6 +108,8 @@ void System::run_ensemble(const EnsembleRequest& request, std::span<EnsembleMemb
         for (std::size_t i = 0; i < request.states.size(); ++i) { members[i] = {allowance, request.states[i], 0, 0}; }
         return;
     }
+    // Starts do not know of each other's steps, so what is left of the budget bounds each of them and not their sum: an
+    // ensemble may overspend it once, and after that no run begins.
     EnsembleRequest limited = request;
     limited.max_steps = std::min(request.max_steps, cost->step_budget - cost->steps);
     if (limited.cancelled == nullptr) { limited.cancelled = &cost->cancelled; }
@@ -132,6 +137,7 @@ void Integrator::run_ensemble(const ParameterVector& parameters, const EnsembleR
     for (std::size_t i = 0; i < request.states.size(); ++i) {
         one.state = request.states[i];
         run(parameters, one, result);
+        // A contact that was under way at the start is no entry met, as in the lanes.
         const auto entered = [](const Contact& contact) { return !contact.open_in; };
         members[i] = {result.status, result.state,
                       static_cast<int>(std::count_if(result.contacts.begin(), result.contacts.end(), entered)),

@@ -84,9 +84,12 @@ public:
                 impact_velocity_.raise(speed, theta);
                 contact_peak_.raise(jet_.stop_damping() * speed, theta);
                 const T overlap = displacement_lanes();
+                // The force sets in at delta_i v, and the event moves by -overlap/v in tau (overlap: its lanes, value
+                // zero): the integrals gain the product, from which v cancels. At the exit they lose it.
                 impulse_ += jet_.stop_damping() * overlap;
                 work_ += jet_.stop_damping() * v * overlap;
             }
+            // Minus the time of entry here, plus that of release in exit(), each moving with its event.
             contact_time_ -= (T(theta) + shift * jet_.omega()) * jet_.inverse_omega();
         }
         discontinuity(shift, theta);
@@ -222,6 +225,7 @@ private:
         }
         double rest = 0.0;
         for (int j = 1; j < degree; ++j) { rest += std::abs(derivative[j]); }
+        // The first term outweighs all others together: no root in the step, which is nearly always so.
         if (std::abs(derivative[0]) > rest) { return; }
         const numerics::Roots roots = numerics::sign_changes(derivative, degree - 1);
         for (int i = 0; i < roots.count; ++i) {
@@ -234,6 +238,7 @@ private:
     template <class Coefficients>
     static Base polish(const Coefficients& c, int degree, Base t) {
         if constexpr (sizeof(Base) > sizeof(double)) {
+            // Three, for the digits of __float128, as for events.
             for (int iteration = 0; iteration < 3; ++iteration) {
                 Base first = 0;
                 Base second = 0;
@@ -261,8 +266,11 @@ private:
     /// Raises `best` by every local maximum of the series in the step, and by its two ends if asked.
     template <class Coefficients>
     void maximise(const Coefficients& c, int degree, Extremum& best, bool from_start) {
+        // Where one step ends and the next begins nothing is lost: a maximum there is a root of the derivative in one
+        // of them. The ends of the run, and of motions at events, are no roots and are looked at by themselves.
         if (from_start) { best.raise(c[0], theta_); }
         if (last_) { best.raise(evaluate(c, degree, h_), theta_ + h_); }
+        // The sum of all moduli is cheap and spares most steps the isolation of roots.
         if (!may_exceed(c, degree, best)) { return; }
         visit_extrema(c, degree, -1, [&](const Base& t) { best.raise(evaluate(c, degree, t), theta_ + t); });
     }
@@ -285,6 +293,7 @@ private:
         }
         maximise(scratch_, order_, contact_peak_, first_);
         T impulse(0.0);
+        // Horner over the integrals of the terms, c_n h^(n+1)/(n+1).
         for (int n = order_; n >= 0; --n) {
             impulse = impulse * h_ + scratch_[n] * (Base(1) / static_cast<Base>(n + 1));
         }
@@ -305,6 +314,7 @@ private:
 
     void watch_acceleration() {
         for (int j = 0; j < order_; ++j) { scratch_[j] = acceleration(j); }
+        // Right behind an event the acceleration has its new one-sided value, which moves with the event by the jerk.
         const T start = scratch_[0] + pending_shift_ * (numerics::base(scratch_[1]) * numerics::base(jet_.omega()));
         if (first_ || pending_) {
             peak_acceleration_.raise(start, theta_);

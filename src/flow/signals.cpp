@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+/// The states of each column, values first; integrals follow them in memory and are not looked at.
 Columns state_columns(const AugmentedSystem& system, const Extended& y) {
     Columns columns{};
     for (int c = 0; c < system.columns(); ++c) { columns[at(c)] = y.data() + c * system.block(); }
@@ -30,6 +31,8 @@ public:
     [[nodiscard]] double inflection() const { return -c2_ / (3.0 * c3_); }
     /// Value at the turning point between two places where the slope has opposite signs.
     [[nodiscard]] double value_at_turn(double low, double high) const {
+        // To 2^-12 of the stretch. The value is flat there, so it is far better than the 2 % that may_matter() allows
+        // for.
         for (int i = 0; i < 12; ++i) {
             const double middle = 0.5 * (low + high);
             (opposite_signs(slope(low), slope(middle)) ? high : low) = middle;
@@ -129,6 +132,7 @@ TurningPoints turning_points(const AugmentedSystem& system, Signal signal, const
     const auto end_at = [&](double t, const State& values) -> RootEnd {
         const MotionPoint point = motion_point(system, t, values, piece.touching);
         RootEnd end{t, {sample(system, signal, point).slope}};
+        // The slope of the overlap is x'/omega, and the derivative of that is known: Newton instead of the secant.
         if (signal.kind == SignalKind::overlap) { end.sample.slope = point.along.state[1] / system.omega(); }
         return end;
     };
@@ -150,10 +154,14 @@ TurningPoints turning_points(const AugmentedSystem& system, Signal signal, const
     if (left.slope == 0.0 || h == 0.0) {
         return found;  // turned at the end of the previous piece, or stands still
     }
+    // An odd number of turning points, taken for one. A slope of zero at the right end counts here, and at the left end
+    // of the next piece no more, so that none is seen twice.
     if (opposite_signs(left.slope, right.slope) || right.slope == 0.0) {
         visit(end_at(piece.left, piece.left_values), end_at(piece.right, piece.right_values));
         return found;
     }
+    // Slopes of one sign at both ends: none, or a pair. The cubic says where the slope comes nearest to the other sign;
+    // the slope of the motion itself there decides.
     const double s = cubic.inflection();
     if (s > 0.0 && s < 1.0 && opposite_signs(cubic.slope(s) / h, left.slope)) {
         const double t = piece.left + s * h;

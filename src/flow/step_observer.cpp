@@ -26,6 +26,10 @@ Sensitive moving(Sensitive a, double slope, const Lanes& shift) {
     return a;
 }
 
+/// Saltation of the lanes where the force of a damped stop sets in (sign +1) or ceases (-1) on the surface. The event
+/// comes earlier by dx/v (overlap dx at fixed time), the force there is delta_i v: their product delta_i dx is what x'
+/// loses and the impulse gains, and v times as much is gained by the work. Nothing is divided by v, which is zero at
+/// grazing.
 void jump(const AugmentedSystem& system, Extended& y, double sign) {
     const double delta = sign * system.damping();
     const double v = system.entry(y, 0, 1);
@@ -102,6 +106,8 @@ void StepObserver::end(double t, const Extended& y, bool touching) {
         out_.theta_x_max = system_.phase(x_max_.t);
         out_.theta_x_min = system_.phase(x_min_negative_.t);
     }
+    // Kelvin-Voigt forces may be negative before release; only a run that never leaves the stop can have a negative
+    // largest force.
     const bool always_touching = result_.contacts.size() == 1 && result_.contacts[0].open_in && touching;
     if (always_touching || force_.best.value > 0.0) {  // in flight the force is zero
         out_.peak_force = force_.best;
@@ -168,6 +174,7 @@ void StepObserver::piece(const Piece& piece, const TurningPoints& turns) {
 void StepObserver::watch(Signal signal, Peak& peak, std::optional<SignalSample>& left, const Piece& piece,
                          const MotionPoint& right_point) {
     const bool by_modulus = has_modulus(signal);
+    // The right end of one piece is the left end of the next, unless an event lies between them.
     if (!left) { left = sample(system_, signal, motion_point(system_, piece.left, piece.left_values, piece.touching)); }
     const SignalSample right = sample(system_, signal, right_point);
     const Wanted wanted{by_modulus ? Wanted::Kind::largest_modulus : Wanted::Kind::maxima, peak.level()};
@@ -181,12 +188,14 @@ void StepObserver::watch(Signal signal, Peak& peak, std::optional<SignalSample>&
 }
 
 void StepObserver::corner(const Crossing& crossing, const Extended& y, bool touching) {
+    // What was remembered belongs to the motion before the event.
     left_ = {};
     force_left_.reset();
     if (watched_ == 0) { return; }
     const MotionPoint point = motion_point(system_, crossing.t, system_.values(y), touching);
     for (int i = 0; i < watched_; ++i) {
         const Signal signal = signals_[at(i)];
+        // A signal that is smooth through the event is not largest there but by chance, and then at a turning point.
         if (signal.kind == SignalKind::peak && system_.rhs().info().peaks[at(signal.peak)].smooth) { continue; }
         const SignalSample here = sample(system_, signal, point);
         const Sensitive value = moving(sensitive(system_, signal, crossing.t, y, touching), here.slope, crossing.shift);
@@ -198,6 +207,7 @@ void StepObserver::enter(const Crossing& crossing, const Extended& y, bool with_
     open_contact(crossing.t, y, false);
     opened_ = crossing;
     if (!with_impact || !observes(observe_force)) { return; }
+    // The speed of impact is that of the flight: it moves with the event by the acceleration before contact.
     const MotionPoint before = motion_point(system_, crossing.t, system_.values(y), false);
     Sensitive speed;
     speed.value = system_.entry(y, 0, 1);
@@ -237,6 +247,7 @@ void StepObserver::close_contact(const Crossing& crossing, const Extended& y, bo
     contact.peak_force = contact_force_.best.value;
     if (contact_force_.found) {
         if (force_.found) {
+            // The smaller one of this contact and the best so far may be the second of all.
             out_.runner_up_force = std::max(out_.runner_up_force, std::min(force_.best.value, contact.peak_force));
         }
         force_.raise(contact_force_.best, contact_force_.t);
@@ -245,6 +256,7 @@ void StepObserver::close_contact(const Crossing& crossing, const Extended& y, bo
     const double lasted = (crossing.t - opened_.t) / omega;
     out_.contact_time.value += lasted;
     for (int lane = 0; lane < system_.lanes(); ++lane) {
+        // d((t_out - t_in)/omega), each end moving with its event.
         out_.contact_time.d[at(lane)] +=
             (crossing.shift[at(lane)] - opened_.shift[at(lane)] - lasted * system_.omega_d(lane)) / omega;
     }

@@ -18,6 +18,7 @@ constexpr double shortest_duration = 1e-60;
 /// Whether the run is to end early is asked every so many steps; a step takes some ten microseconds.
 constexpr long steps_between_questions = 64;
 
+/// Whether every number of the run is finite: values, lanes and integrals alike.
 bool all_finite(const AugmentedSystem& system, const Extended& y) {
     for (int i = 0; i < system.size(); ++i) {
         if (!std::isfinite(y[at(i)])) { return false; }
@@ -41,6 +42,7 @@ void StepwiseRun::run() {
     begin();
     while (ongoing() && advance()) {
         const Piece step = step_as_piece();
+        // Turning points of the overlap cost a search per step; free runs without extrema do without.
         const bool turns_matter = hybrid() || observer_.watches_extrema();
         const TurningPoints turns = turns_matter ? turns_of(SignalKind::overlap, step) : TurningPoints{};
         const std::optional<Event> event = hybrid() ? first_event(step, turns) : std::nullopt;
@@ -120,6 +122,7 @@ std::optional<StepwiseRun::Event> StepwiseRun::first_event(const Piece& step, co
     std::optional<TurningPoints> force_turns;
     for (const model::Transition& row : rules_.from(phase_)) {
         const bool by_force = row.watched == model::Watched::force;
+        // The slope of the force needs right-hand sides, so its turning points are sought only where a row watches it.
         if (by_force && !force_turns) { force_turns = turns_of(SignalKind::stop_force, step); }
         const auto t = first_crossing(by_force ? SignalKind::stop_force : SignalKind::overlap, row.direction > 0, step,
                                       by_force ? *force_turns : turns);
@@ -141,6 +144,8 @@ std::optional<double> StepwiseRun::first_crossing(SignalKind kind, bool upward, 
     };
     const auto crossing_between = [&](const RootEnd& a, const RootEnd& b) -> std::optional<double> {
         const double side = upward ? 1.0 : -1.0;
+        // At a turning point one of the two slopes is zero up to rounding, with any sign: the larger one tells which
+        // way the function goes.
         const double trend = std::abs(a.sample.slope) > std::abs(b.sample.slope) ? a.sample.slope : b.sample.slope;
         const double way = side * trend * (step.right - step.left);
         // Rounding and the method's own error may set the function beyond zero while it is moving back.
@@ -162,6 +167,7 @@ std::optional<double> StepwiseRun::first_crossing(SignalKind kind, bool upward, 
 void StepwiseRun::observe(Piece piece, TurningPoints turns, const std::optional<Event>& event) {
     if (!observer_.watches_steps() && !(touching() && (request_.observe & observe_force) != 0U)) { return; }
     if (event) {
+        // Behind the event the step describes a motion that does not take place.
         while (turns.count > 0 && turns.points[at(turns.count - 1)].t > event->t) { --turns.count; }
         piece.right = event->t;
         stepper_.values(piece.right, piece.right_values);
@@ -176,6 +182,8 @@ Crossing StepwiseRun::crossing(const Event& event) const {
     const Sensitive value = sensitive(system_, {kind}, event.t, y_, touching());
     for (int lane = 0; lane < system_.lanes(); ++lane) {
         const double d = value.d[at(lane)];
+        // The shift of the event, -dh/(dh/dt). Where nothing moves it there is no shift, also at grazing, where the
+        // slope is zero.
         result.shift[at(lane)] = d == 0.0 ? 0.0 : -d / slope;
     }
     return result;
@@ -192,6 +200,7 @@ void StepwiseRun::cross(const Event& event) {
     const bool by_gap = row.watched == model::Watched::gap;
     if (row.on_surface) { system_.entry(y_, 0, 0) = 0.0; }
     const Crossing place = crossing(event);
+    // Accelerations jump at the event: the values on both sides of it are candidates for peaks.
     observer_.corner(place, y_, touching());
     if (row.next == Phase::contact) {
         observer_.enter(place, y_, by_gap);
@@ -201,6 +210,7 @@ void StepwiseRun::cross(const Event& event) {
     saltate(system_, y_, row.saltation);
     phase_ = row.next;
     observer_.corner(place, y_, touching());
+    // No method starts over a stretch that rounding makes up.
     if (std::abs(limit() - t_) <= shortest_restart * std::abs(limit())) {
         result_.status = Status::ok;
     } else {

@@ -21,6 +21,7 @@ void free_context(void* context) {
 
 void free_vector(void* vector) { N_VDestroy(static_cast<N_Vector>(vector)); }
 
+/// Misuse of a request. Negative hybrid runs: the table of the contact law tells its events forwards.
 void check(const AugmentedSystem& system, const Request& request) {
     if (!std::isfinite(request.theta) || !std::isfinite(request.duration)) {
         throw std::invalid_argument("Request.theta and Request.duration must be finite, got " +

@@ -77,6 +77,7 @@ public:
             for (int i = 0; i < system.states(); ++i) {
                 absolute_.set(c, i, absolute_share * tolerance_ * system.natural_size(c, i));
             }
+            // Entry 1 stands for any that is not the overlap: integrals are of the size of states.
             integral_absolute_[at(c)] = absolute_share * tolerance_ * system.natural_size(c, 1);
         }
         if (matrix_) {
@@ -100,6 +101,7 @@ public:
         left_values_ = right_values_;
         const int flag = CVode(memory_.get(), limit_, state_.values(), &right_, CV_ONE_STEP);
         if (flag < 0) { return false; }
+        // Exactly, because the run ends where right == limit.
         if (flag == CV_TSTOP_RETURN) { right_ = limit_; }
         std::copy_n(state_.numbers(0).begin(), system_.states(), right_values_.begin());
         return true;
@@ -110,6 +112,7 @@ public:
             out = right_values_;
             return;
         }
+        // The vector of values is only a place to put them: CVODES goes on from its own history.
         CVodeGetDky(memory_.get(), t, 0, state_.values());
         out = {};
         std::copy_n(state_.numbers(0).begin(), system_.states(), out.begin());
@@ -135,6 +138,7 @@ private:
     [[nodiscard]] bool has_integrals() const { return system_.integrals().count > 0; }
 
     bool create(double t) {
+        // BDF: this backend is there for what is stiff.
         memory_.reset(CVodeCreate(CV_BDF, context()));
         void* memory = memory_.get();
         if (memory == nullptr) { throw std::bad_alloc(); }
@@ -147,6 +151,9 @@ private:
                                             static_cast<SUNMatrix>(matrix_.get()))) &&
                     ok(CVodeSetJacFn(memory, &CvodeStepper::jacobian));
         if (fine && has_lanes()) {
+            // Staggered: lanes are corrected after the values have converged, with the same factorised matrix. They
+            // take part in the error test, and so do integrals: else steps that suit the values alone would leave them
+            // at no known accuracy.
             fine = ok(CVodeSensInit(memory, system_.lanes(), CV_STAGGERED, &CvodeStepper::lane_rate, state_.lanes())) &&
                    ok(CVodeSensSVtolerances(memory, tolerance_, absolute_.lanes())) &&
                    ok(CVodeSetSensErrCon(memory, SUNTRUE));

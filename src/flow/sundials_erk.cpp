@@ -53,6 +53,7 @@ public:
         right_values_ = system_.values(y);
         void* memory = memory_.get();
         if (memory == nullptr) { return create(t); }
+        // The last step before the event as a first guess spares ARKODE the search for one.
         const double first = std::min(std::abs(step_), std::abs(limit - t));
         return ERKStepReInit(memory, &ErkStepper::rate, t, vector()) == ARK_SUCCESS &&
                ERKStepSetInitStep(memory, std::copysign(first, limit - t)) == ARK_SUCCESS &&
@@ -65,6 +66,7 @@ public:
         left_values_ = right_values_;
         const int flag = ERKStepEvolve(memory_.get(), limit_, vector(), &right_, ARK_ONE_STEP);
         if (flag < 0) { return false; }
+        // Exactly, because the run ends where right == limit.
         if (flag == ARK_TSTOP_RETURN) { right_ = limit_; }
         ERKStepGetLastStep(memory_.get(), &step_);
         right_values_ = system_.values(right_all_);
@@ -131,6 +133,7 @@ private:
         const auto& stepper = *static_cast<const ErkStepper*>(self);
         double* rate = N_VGetArrayPointer(out);
         stepper.system_.rates(t, N_VGetArrayPointer(y), stepper.touching_, rate);
+        // Outside the domain of the model rates are NaN; a positive value makes ARKODE repeat the step.
         constexpr int try_shorter = 1;
         const bool finite = std::all_of(rate, rate + stepper.system_.size(), [](double r) { return std::isfinite(r); });
         return finite ? 0 : try_shorter;

@@ -47,12 +47,15 @@ public:
           rules_(model::contact_rules(law, numerics::base(jet_.stop_damping()) != 0)),
           order_(std::min(order, Jet::max_order)),
           derivative_order_(order_),
+          // The step that Jorba and Zou give for a series truncated at this order: the radius of convergence over e^2,
+          // times their safety factor exp(-0.7/(order - 1)).
           safety_(std::exp(-2.0 - 0.7 / (order_ - 1))),
           observer_(jet_) {}
 
     /// Follows the flow from `start` at phase `theta` (whose derivative part, if any, shifts the drive) for `duration`.
     Status run(const JetState& start, const T& theta, const Base& duration, const Request& request) {
         request_ = &request;
+        // Not below order 4: at loose tolerances the series are short, and little would be left of the lanes.
         if (lanes > 0 && !request.full_derivatives) {
             derivative_order_ = std::max(4, order_ - derivative_orders_saved);
         }
@@ -120,9 +123,12 @@ private:
         const Base size = jet_.norm(0);
         // States are of order one by scaling; smaller ones are held to the same absolute tolerance.
         const double scale = std::max(1.0, static_cast<double>(size));
+        // Both of the last two coefficients have their say: one alone may vanish by symmetry (even or odd series).
         double h = 1e300;
         for (int j : {order_ - 1, order_}) {
             const double c = static_cast<double>(jet_.norm(j)) / scale;
+            // A coefficient that is NaN fails the first test. States of 1e6 mean that the motion left: they are of
+            // order one by scaling.
             if (!(c < 1e300) || !(scale < 1e6)) {
                 status_ = Status::diverged;
                 step_ = 0;
@@ -132,6 +138,7 @@ private:
             const double largest = std::max(c, lane_growth(j - order_ + derivative_order_, j));
             if (largest > 0) { h = std::min(h, std::pow(largest, -1.0 / j)); }
         }
+        // An undriven mass at rest has no coefficients that could bound the step; about half a drive cycle does.
         h = std::min(h * safety_, 3.0);
         const Base remaining = duration_ - elapsed_;
         const Base room = remaining < 0 ? -remaining : remaining;
@@ -148,12 +155,17 @@ private:
         if constexpr (lanes > 0) {
             for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i) {
                 double first = 0.0;
+                // The first three coefficients together: a direction may start with no displacement or no velocity, and
+                // a single one of them as the unit would make the growth infinite.
                 for (int n = 0; n < 3; ++n) {
                     first = std::max({first, std::abs(jet_.x()[n].d[i]), std::abs(jet_.v()[n].d[i])});
                 }
                 const double last = std::max(std::abs(jet_.x()[j].d[i]), std::abs(jet_.v()[j].d[i]));
+                // A lane that does not move at all has nothing to follow.
                 if (last > growth * first && first > 0.0) { growth = last / first; }
             }
+            // The lanes stop earlier than the values: what j orders grow by is carried over to as many orders as the
+            // values have.
             if (j != value_order) { growth = std::pow(growth, static_cast<double>(value_order) / j); }
         }
         return lane_tolerance * growth;
@@ -186,12 +198,16 @@ private:
         const int shift = deflate_ ? 1 : 0;
         const int degree = order_ - shift;
         const double unit = static_cast<double>(sign);
+        // The function in units of the step, c(t/h), and the largest that its higher terms could add to c[0] anywhere
+        // in it. A run that never reaches the stop pays some 6 % of its instructions for this bound.
         for (int j = 0; j <= degree; ++j) {
             c[j] = static_cast<double>(event_coefficient(event.watched, j + shift)) * power;
             power *= h;
             if (j > 0) { bound += std::max(0.0, unit * c[j]); }
         }
         const bool already = unit * c[0] >= 0.0;  // on the surface, or crossed by rounding, at the very start
+        // Where it is deflated, c[0] is the slope at the event and not a place on the surface: a sign there is no
+        // crossing.
         if (already && unit * c[1] > 0.0 && !deflate_) { return accept(event, Base(0)); }
         if (unit * c[0] + bound < 0.0) { return; }
         double t = 0.0;
@@ -203,6 +219,8 @@ private:
     /// Newton's method in the scalar's own precision (the isolated root is good to double precision).
     [[nodiscard]] Base refine(model::Watched watched, int shift, Base t) const {
         if constexpr (sizeof(Base) > sizeof(double)) {
+            // Digits double with each iteration: 16 become more than the 34 of __float128 in two; the third one is for
+            // a flat crossing.
             for (int iteration = 0; iteration < 3; ++iteration) {
                 Base value = 0;
                 Base slope = 0;
@@ -225,6 +243,7 @@ private:
     void advance() {
         if (request_->stop == StopMode::held && finished_) { divide_gap(); }
         jet_.advance(step_, order_);
+        // The sum of the steps would miss the end by rounding.
         elapsed_ = finished_ ? duration_ : elapsed_ + step_;
         deflate_ = false;
     }
@@ -248,12 +267,14 @@ private:
 
     /// Puts the state on the surface, applies the saltation to the lanes and changes phase.
     void cross() {
+        // Chattering contacts accumulate at a point in time: without a cap the run would not end.
         if (++events_ > request_->max_events) {
             status_ = Status::too_many_events;
             return;
         }
         const Base theta = numerics::base(theta_) + elapsed_;
         const bool by_gap = event_->watched == model::Watched::gap;
+        // Rounding leaves the state a little beside the surface; on it the deflated series begins with exactly zero.
         if (event_->on_surface) { jet_.set_position(numerics::base(jet_.stop_position())); }
         if (event_->next == Phase::contact) {
             observer_.enter(theta, by_gap);
@@ -269,6 +290,7 @@ private:
     void saltate(int sign) {
         if constexpr (lanes > 0) {
             const double delta = numerics::base(jet_.stop_damping());
+            // The row of x' in S = I -+ delta_i e_v e_x^T; all other rows are those of the identity.
             jet_.velocity().d += (sign * delta) * (jet_.position().d - jet_.stop_position().d);
         }
     }

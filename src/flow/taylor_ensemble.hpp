@@ -33,6 +33,7 @@ public:
         : jets_(parameters),
           rules_(model::contact_rules(law, jets_.stop_damping() != 0.0)),
           order_(std::min(order, Jets::max_order)),
+          // As in TaylorRun.
           safety_(std::exp(-2.0 - 0.7 / (order_ - 1))) {}
 
     void run(const EnsembleRequest& request, std::span<EnsembleMember> members) {
@@ -72,6 +73,8 @@ private:
         Lane& lane = lane_[i];
         lane = Lane{};
         if (next_ == request_->states.size()) {
+            // No start is left for this lane. It goes on in step with the others, at rest and with its time used up, so
+            // that its steps have length zero and its numbers stay finite.
             jets_.clear(i);
             elapsed_.set(i, request_->duration);
         } else {
@@ -113,8 +116,10 @@ private:
         const V scale = max(jets_.norm(0), numerics::all_lanes<lanes>(1.0));
         const V last = jets_.norm(order_) / scale;
         const V but_one = jets_.norm(order_ - 1) / scale;
+        // The same limits as for a single run; a lane beyond them ends, with a step of zero because its own may be NaN.
         const Mask sound = (last < 1e300) & (but_one < 1e300) & (scale < 1e6);
         const V growth = max(log(but_one) * (1.0 / (order_ - 1)), log(last) * (1.0 / order_));
+        // The cap is for a mass at rest, as in TaylorRun.
         const V h = min(exp(-growth) * safety_, numerics::all_lanes<lanes>(3.0));
         const V remaining = request_->duration - elapsed_;
         const Mask more = h < remaining;
@@ -178,6 +183,7 @@ private:
         double bound = 0.0;
         const int shift = lane.deflate ? 1 : 0;
         const int degree = order_ - shift;
+        // As in TaylorRun::find: coefficients in units of the step, and a bound on what the higher terms add.
         const double unit = static_cast<double>(sign);
         for (int j = 0; j <= degree; ++j) {
             c[j] = event_coefficient(i, force, j + shift) * power;
@@ -209,6 +215,7 @@ private:
         EnsembleMember& member = *lane.member;
         if (member.status == Status::not_run) {
             ++lane.steps;
+            // Nearly every step: nothing happened, and the masks are still right.
             if (lane.event == nullptr && !lane.deflate && !lane.finished && lane.steps < request_->max_steps) {
                 return;
             }

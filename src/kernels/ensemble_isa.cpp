@@ -8,7 +8,9 @@
 namespace percuss::kernels {
 namespace {
 
+/// A 512-bit register of doubles; narrower instruction sets hold the eight in several registers.
 constexpr int lanes = 8;
+/// As in the kernels for single runs.
 constexpr int max_order = 24;
 
 template <class Jets>

@@ -14,6 +14,7 @@
 namespace percuss::kernels {
 namespace {
 
+/// The kernels of one instruction set, both tables by scene.
 struct Set {
     std::string_view name;
     const TaylorTable* single;
@@ -47,6 +48,7 @@ const std::vector<Set>& available_sets() {
     return sets;
 }
 
+/// The set of this name, auto the strongest that runs here; throws std::invalid_argument that names those that do.
 const Set& choose_set(std::string_view requested) {
     const std::vector<Set>& sets = available_sets();
     if (requested == "auto") { return sets.back(); }
@@ -76,6 +78,7 @@ bool stop_is_stiff(const flow::SystemInfo& info, const flow::ParameterVector& p,
     if (!info.has_stop) { return false; }
     const double delta = p[static_cast<std::size_t>(info.damping)];
     const double k = p[static_cast<std::size_t>(info.stiffness)] + stiffness;
+    // Mass on the stop: s^2 + delta s + k = 0. Overdamped, the faster root decays at delta/2 to delta.
     const bool overdamped = delta > 2.0 * std::sqrt(k);
     return overdamped && delta * std::numbers::pi / omega >= stiff_contact;
 }
@@ -105,6 +108,7 @@ public:
         if (request.stop == flow::StopMode::hybrid && request.duration < 0.0) {
             throw std::invalid_argument("flow request: a hybrid run cannot go back in time");
         }
+        // The narrowest compiled kernel that holds all directions: idle lanes cost as much as used ones.
         std::size_t lanes = 0;
         while (static_cast<std::size_t>(lane_classes[lanes]) < request.directions.size()) { ++lanes; }
         (*kernels_)[lanes](parameters, settings_, request, result);
@@ -149,7 +153,9 @@ std::string choose_integrator(std::string_view requested, const model::Scene& sc
     const auto system = make_plain_system(scene, law);
     const double resonance = system->linear_resonance(parameters);
     const double given = parameters[static_cast<std::size_t>(system->info().omega)];
+    // An edge is not known yet; it lies near the resonance as far as orders of magnitude go.
     const double omega = given > 0.0 ? given : resonance;
+    // In contact the suspension, of stiffness resonance^2 per unit mass, acts beside the stop.
     const bool stiff = system->fastest_decay(parameters) >= stiff_ratio * omega ||
                        stop_is_stiff(system->info(), parameters, resonance * resonance, omega);
     return stiff ? "cvode" : "taylor";

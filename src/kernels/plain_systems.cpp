@@ -46,6 +46,7 @@ struct Lifted {
     }
 };
 
+/// What the levels above must know of a scene under a contact law.
 flow::SystemInfo info_of(const model::Scene& scene, model::ContactLaw law) {
     flow::SystemInfo info;
     info.states = scene.states;
@@ -160,6 +161,8 @@ private:
     /// Calls the function with the smallest compiled number of lanes that holds `count` directions.
     template <class Function>
     static void with_lanes(std::size_t count, Function&& function) {
+        // One is for slopes along the motion, four for the Jacobian of up to four states, the rest for the directions
+        // of a request.
         if (count <= 1) {
             function.template operator()<1>();
         } else if (count <= 4) {
@@ -173,6 +176,7 @@ private:
     model::ContactLaw law_;
 };
 
+/// The plain system of the scene at this index of the list.
 template <class... S>
 std::shared_ptr<const flow::RightHandSide> make(model::SceneList<S...>, std::size_t index, model::ContactLaw law) {
     using Maker = std::shared_ptr<const flow::RightHandSide> (*)(model::ContactLaw);
@@ -183,6 +187,7 @@ std::shared_ptr<const flow::RightHandSide> make(model::SceneList<S...>, std::siz
     return makers.at(index)(law);
 }
 
+/// Place of a scene in the list, told by its address. Throws std::invalid_argument for one that is not in it.
 template <class... S>
 std::size_t index_in(model::SceneList<S...>, const model::Scene& scene) {
     const std::array<const model::Scene*, sizeof...(S)> listed = {&S::Plain::scene...};

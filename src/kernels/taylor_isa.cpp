@@ -8,8 +8,10 @@
 namespace percuss::kernels {
 namespace {
 
+/// Room for the order of the tightest tolerance that is allowed: 1e-16 asks for order 21.
 constexpr int max_order = 24;
 
+/// Derivative along direction i; zero for scalars that carry none.
 template <class T>
 double lane(const T& a, std::size_t i) {
     if constexpr (numerics::ScalarTraits<T>::lanes > 0) {
@@ -19,6 +21,7 @@ double lane(const T& a, std::size_t i) {
     }
 }
 
+/// The value in double precision with its derivatives.
 template <class T>
 flow::Sensitive sensitive(const T& a) {
     flow::Sensitive result;
@@ -34,6 +37,7 @@ void seed([[maybe_unused]] T& target, [[maybe_unused]] std::size_t i, [[maybe_un
     if constexpr (numerics::ScalarTraits<T>::lanes > 0) { target.d.set(i, value); }
 }
 
+/// Values of a state, its derivatives left out.
 template <class Jet>
 flow::State plain(const typename Jet::State& y) {
     flow::State state{};
@@ -41,6 +45,7 @@ flow::State plain(const typename Jet::State& y) {
     return state;
 }
 
+/// Contacts in the order in which they were met, in double precision.
 template <class Jet>
 void report_contacts(const flow::SeriesObserver<Jet>& observer, flow::Result& result) {
     for (const auto& record : observer.contacts()) {
@@ -56,6 +61,7 @@ void report_contacts(const flow::SeriesObserver<Jet>& observer, flow::Result& re
     }
 }
 
+/// What the mask asked for; the rest stays zero.
 template <class Jet>
 void report_observables(const flow::SeriesObserver<Jet>& observer, std::uint32_t mask, flow::Observables& out) {
     if ((mask & flow::observe_extrema) != 0U) {
@@ -92,6 +98,7 @@ void report_observables(const flow::SeriesObserver<Jet>& observer, std::uint32_t
     }
 }
 
+/// One run: seeds a lane per direction, follows the flow, and takes what the scalars of the jet carry into the result.
 template <class Jet>
 void kernel(const flow::ParameterVector& parameters, const TaylorSettings& settings, const flow::Request& request,
             flow::Result& result) {
@@ -121,14 +128,17 @@ void kernel(const flow::ParameterVector& parameters, const TaylorSettings& setti
     }
     if (result.status == flow::Status::ok) {
         Jet& jet = run.jet();
+        // Order 1 is all that d(state)/d(theta) at the end needs.
         jet.expand(run.theta_at(), run.touching(), 1);
         const auto rate = jet.rate();
         for (std::size_t k = 0; k < rate.size(); ++k) { result.rate[k] = rate[k]; }
         if (request.stop == flow::StopMode::held) {
+            // k (x - x_stop) from the divided gap: the difference itself loses its digits as the contact gets short.
             const double duration = std::abs(request.duration);
             const T force = jet.stop_stiffness() * run.divided_gap() * request.duration + jet.stop_damping() * y[1];
             result.divided_gap = sensitive(run.divided_gap());
             const T scale = jet.stop_stiffness() * duration + jet.stop_damping();
+            // Without damping the unit k |duration| is zero at duration zero, and so is the force.
             if (numerics::base(scale) > 0.0) { result.divided_force = sensitive(force / scale); }
         }
     }

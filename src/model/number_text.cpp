@@ -16,6 +16,7 @@ std::string_view trimmed(std::string_view text) {
 std::optional<double> leading_number(std::string_view text, std::string_view& rest) {
     text = trimmed(text);
     std::string_view digits = text;
+    // std::from_chars takes no plus sign.
     if (digits.starts_with('+')) {
         digits.remove_prefix(1);
         if (digits.starts_with('-')) { return std::nullopt; }
@@ -43,6 +44,7 @@ std::optional<double> shifted_number(std::string_view digits, int exponent) {
     std::string text(trimmed(digits));
     const auto mark = text.find_first_of("eE");
     if (mark != std::string::npos) {
+        // The text's own exponent and the shift become one; std::from_chars takes no plus sign.
         const std::string_view own = std::string_view(text).substr(text[mark + 1] == '+' ? mark + 2 : mark + 1);
         int own_exponent = 0;
         if (std::from_chars(own.data(), own.data() + own.size(), own_exponent).ec != std::errc()) {
@@ -63,6 +65,7 @@ std::string number_text(double value, int digits) {
 
 std::string exact_text(double value) {
     std::array<char, 64> buffer{};
+    // The shortest text that reads back as the same number.
     const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
     return {buffer.data(), error == std::errc() ? end : buffer.data()};
 }

@@ -93,6 +93,7 @@ std::optional<Key> counterpart(Key key, const Actuator& actuator) {
     if (role == Role::none) { return std::nullopt; }
     std::optional<Key> found;
     for (const Key own : actuator.keys) {
+        // Where an actuator has a key of its own for the role beside the shared one, its own is meant.
         const bool better = !found || (place(*found) < shared_keys && place(own) >= shared_keys);
         if (key_info(own).role == role && better) { found = own; }
     }

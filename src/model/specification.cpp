@@ -11,6 +11,7 @@ namespace percuss::model {
 
 namespace {
 
+/// Appends a sentence when the value of a key is not finite or not in its range (SI units).
 void check_value(const KeyInfo& info, double value, std::vector<std::string>& found) {
     const bool above = info.lowest_allowed ? value >= info.lowest : value > info.lowest;
     if (!(std::isfinite(value) && above && value <= info.highest)) {

@@ -50,6 +50,8 @@ public:
         const std::lock_guard lock(mutex_);
         const Unit from(ut_parse(system_.get(), from_text.c_str(), UT_UTF8));
         if (!from) { return {Outcome::unknown, 0.0}; }
+        // UDUNITS converts rad/s to Hz with factor 1 and takes 3600 rpm for 377 Hz: frequencies would be read wrongly
+        // without a word.
         if (mentions_angle(from.get())) { return {Outcome::angle, 0.0}; }
         const Unit to(ut_parse(system_.get(), to_text.c_str(), UT_ASCII));
         if (!to) { throw std::logic_error("units: the database does not know " + to_text); }
@@ -57,6 +59,7 @@ public:
         const Converter converter(ut_get_converter(from.get(), to.get()));
         if (!converter) { return {Outcome::wrong_dimension, 0.0}; }
         const double one = cv_convert_double(converter.get(), 1.0);
+        // A shifted (degree Celsius) or logarithmic scale is no factor: two points tell.
         const double thousand = cv_convert_double(converter.get(), 1000.0);
         const bool proportional =
             std::isfinite(one) && one > 0.0 && std::abs(thousand - 1000.0 * one) <= 1e-9 * thousand;
@@ -126,6 +129,7 @@ bool is_product_of_powers(std::string_view unit) {
 
 std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 
+/// What a reader may write instead, for messages.
 std::string expectation(std::string_view unit) {
     if (unit == "1") { return "expected a pure number"; }
     return "expected a number with a unit of the dimension of " + std::string(unit) + ", or a bare number in " +
@@ -136,8 +140,12 @@ std::string expectation(std::string_view unit) {
     throw std::invalid_argument(quoted(text) + " " + std::string(why) + ": " + expectation(unit));
 }
 
+/// `value`, the number at the beginning of `text`, from the unit `suffix` to `unit`. Throws std::invalid_argument with
+/// the reason.
 double convert(std::string_view text, double value, std::string_view suffix, std::string_view unit) {
+    // Nothing to convert. A pure number has no unit that could be written.
     if (suffix == unit && unit != "1") { return value; }
+    // Of angular frequencies only rad/s itself is taken: the database would take Hz for the same.
     if (unit == "rad/s") { refuse(text, "is not an angular frequency in rad/s", unit); }
     if (!is_product_of_powers(suffix)) { refuse(text, "is not one number with one unit", unit); }
     const Factor factor = Database::instance().factor(std::string(suffix), std::string(unit));

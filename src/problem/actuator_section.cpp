@@ -15,11 +15,13 @@ namespace {
 
 using model::Key;
 
+/// "; use KEY" where this kind of problem has a key of its own for the same thing, else nothing.
 std::string counterpart_hint(Key key, const model::Actuator& actuator) {
     const auto own = model::counterpart(key, actuator);
     return own ? "; use " + std::string(model::key_info(*own).name) : "";
 }
 
+/// Sets a key from a setting. Throws ProblemError for a key of another kind of problem or a value that cannot be read.
 void read_key(const Setting& setting, Key key, model::Specification& spec) {
     if (!model::belongs(key, *spec.type)) {
         throw ProblemError(as_written(setting) + ": this is " + std::string(spec.type->kind) +
@@ -41,6 +43,8 @@ bool is_replaced(const model::Specification& spec, Key key) {
     return model::is_frequency(key) && !spec.has(key) && model::has_frequency(spec);
 }
 
+/// How a key is told: its value, "edge" for a frequency that is absent, an empty text for one that is missing, nothing
+/// where it does not belong.
 std::vector<Echo> key_echo(const model::Specification& spec, Key key) {
     if (!model::belongs(key, *spec.type) || is_replaced(spec, key)) { return {}; }
     if (spec.has(key)) { return {number_echo(spec.value(key), model::key_info(key).unit)}; }
@@ -51,6 +55,7 @@ std::vector<Echo> key_echo(const model::Specification& spec, Key key) {
     return {};
 }
 
+/// The row of a key of the model: range, unit and default from its KeyInfo.
 Row key_row(Key key) {
     const model::KeyInfo& info = model::key_info(key);
     const std::string edge = model::is_frequency(key) ? "edge" : "";
@@ -94,6 +99,8 @@ std::string sections_to_give() { return choices(&model::Actuator::sections_in_wo
 double parse_key_value(Key key, std::string_view text) {
     const model::KeyInfo& info = model::key_info(key);
     if (info.name.starts_with("nondimensional.")) { return model::parse_plain_number(text); }
+    // The likeliest slip, and wrong by 2 pi: the message does the conversion. What only looks like rad/s goes to the
+    // general reader for its message.
     if (info.unit == "Hz" && text.find("rad") != std::string_view::npos) {
         double angular = 0.0;
         try {
@@ -136,6 +143,7 @@ const model::Actuator& family_of(const SettingList& settings) {
     const model::Actuator* described = nullptr;
     for (const model::Actuator* row : rows) {
         const Setting* found = evidence(*row);
+        // Sections decide, as they say more than the type: two kinds of problem share one type.
         if (found == nullptr) { continue; }
         if (described != nullptr) {
             throw ProblemError(as_written(*evidence(*described)) + " and " + as_written(*found) +
@@ -148,6 +156,7 @@ const model::Actuator& family_of(const SettingList& settings) {
     }
     if (described != nullptr) { return *described; }
     for (const model::Actuator* row : rows) {
+        // The type alone, with no key of it yet: enough to say which keys are missing.
         if (row->follows_type && row->type == type_name) { return *row; }
     }
     throw ProblemError("no actuator is described: give " + sections_to_give());

@@ -24,6 +24,8 @@ bool take_last_word(std::string_view& text, std::string_view word) {
     return true;
 }
 
+/// A bound of a variable in the base unit, which must be a value that the key itself may have: each design of the range
+/// is evaluated. Throws std::invalid_argument.
 double parse_bound(model::Key key, std::string_view text) {
     const model::KeyInfo& info = model::key_info(key);
     const double value = parse_key_value(key, text);
@@ -57,6 +59,7 @@ void refuse_half_a_unit(const model::KeyInfo& info, std::string_view lower, std:
                                 std::string(info.unit) + ": write " + with_unit(lower) + " .. " + with_unit(upper));
 }
 
+/// "KEY in LOWER .. UPPER [log] [integer]" with bounds in base units. Throws ProblemError.
 design::DesignVariable parse_variable(const Setting& setting, const model::Actuator& family) {
     constexpr std::string_view form = "expected KEY in LOWER .. UPPER [log] [integer]";
     const std::string_view text = trimmed(setting.value);
@@ -65,6 +68,7 @@ design::DesignVariable parse_variable(const Setting& setting, const model::Actua
     if (dots == std::string_view::npos) { throw bad_value(setting, std::string(form)); }
     std::string_view upper = trimmed(text.substr(dots + 2));
     design::DesignVariable variable;
+    // Either order, each word at most once: a second one stays in the text and is refused with it.
     while (true) {
         if (!variable.logarithmic && take_last_word(upper, "log")) {
             variable.logarithmic = true;
@@ -83,6 +87,7 @@ design::DesignVariable parse_variable(const Setting& setting, const model::Actua
     } catch (const std::invalid_argument& error) {
         throw bad_value(setting, error.what());
     } catch (const ProblemError& error) { throw bad_value(setting, error.what()); }
+    // An integer range may hold one number; a real one would leave the optimiser a variable without room.
     const bool single_value = variable.integer && variable.lower == variable.upper;
     if (!(variable.lower < variable.upper || single_value)) {
         throw bad_value(setting, "the range is reversed or empty: LOWER must be below UPPER");
@@ -103,12 +108,14 @@ void add_variable(const Setting& setting, design::Problem& problem) {
     if (std::any_of(problem.variables.begin(), problem.variables.end(), same)) {
         throw bad_value(setting, "this key is a variable already");
     }
+    // It would have no effect: gradients of zero, and an optimum that means nothing.
     if (model::is_of_stop(variable.key) && !model::has_stop(problem.actuator.law)) {
         throw bad_value(setting, "stop.law = none: there is no stop to vary");
     }
     problem.variables.push_back(variable);
 }
 
+/// A quantity that this actuator has. Throws ProblemError with the nearest name or why there is none.
 Quantity parse_quantity_name(const Setting& setting, std::string_view name, const model::Actuator& family) {
     std::vector<std::string> names;
     for (const Quantity quantity : design::reported_quantities(family)) {
@@ -124,6 +131,7 @@ Quantity parse_quantity_name(const Setting& setting, std::string_view name, cons
     return *quantity;
 }
 
+/// Throws ProblemError for a quantity without gradient or one that is an objective already.
 void add_objective(const Setting& setting, bool maximise, design::Problem& problem) {
     const auto quantity = parse_quantity_name(setting, trimmed(setting.value), *problem.actuator.type);
     if (!design::quantity_info(quantity).smooth) {
@@ -136,10 +144,12 @@ void add_objective(const Setting& setting, bool maximise, design::Problem& probl
     problem.objectives.push_back({quantity, maximise});
 }
 
+/// "QUANTITY <= VALUE" or ">=", the bound in the unit of the quantity. Throws ProblemError.
 design::Limit parse_limit(const Setting& setting, const model::Actuator& family) {
     const std::string_view text = trimmed(setting.value);
     const auto at_most = text.find("<=");
     const auto at_least = text.find(">=");
+    // npos is larger than any place, so this is the one that is there, or the first of both.
     const auto position = std::min(at_most, at_least);
     if (position == std::string_view::npos) {
         throw bad_value(setting, "expected QUANTITY <= VALUE or QUANTITY >= VALUE");
@@ -220,6 +230,7 @@ std::vector<Echo> variables_echo(const design::Problem& problem) {
     return out;
 }
 
+/// Bounds in print are rounded; `exact` is what the hash is made of.
 std::vector<Echo> limits_echo(const design::Problem& problem) {
     const bool plain = problem.actuator.type->nondimensional;
     std::vector<Echo> out;

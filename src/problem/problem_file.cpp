@@ -19,6 +19,7 @@ void fill_in_variables(design::Problem& problem) {
         if (problem.actuator.has(variable.key)) { continue; }
         double middle =
             variable.logarithmic ? std::sqrt(variable.lower * variable.upper) : 0.5 * (variable.lower + variable.upper);
+        // Of an integer range the middle may lie between two whole numbers.
         if (variable.integer) { middle = std::floor(middle); }
         problem.actuator.set(variable.key, middle);
     }
@@ -33,10 +34,12 @@ bool is_known_trouble(const Troubles& troubles, const std::string& violation) {
     });
 }
 
+/// What can be said of the values without computing, apart from what reading complained of already.
 void check_values(const design::Problem& problem, FrequencyUse use, Troubles& troubles) {
     for (const std::string& violation : model::violations(problem.actuator)) {
         if (!is_known_trouble(troubles, violation)) { troubles.add(violation); }
     }
+    // Verbs that give the frequency themselves need no edge.
     if (use == FrequencyUse::operates && !model::has_stop(problem.actuator.law) &&
         !model::has_frequency(problem.actuator) && !is_known_trouble(troubles, "drive.frequency ")) {
         troubles.add("drive.frequency = edge: stop.law = none leaves no edge to operate at, give a frequency");
@@ -51,6 +54,8 @@ void read_section(const Section& section, void* options, const SettingList& sett
             troubles.attempt([&] { row.set(options, setting, context); });
         }
     };
+    // What is listed stays in the order in which it was written, whatever key it is under. Elsewhere the rows have
+    // their own order, since one may depend on those above it.
     if (section.in_file_order) {
         for (const Setting& setting : settings.all()) {
             for (const Row& row : section.rows) { read(row, setting); }
@@ -70,6 +75,7 @@ ProblemFile assemble(std::string name, std::vector<Setting> given, std::span<con
     problem.name = std::move(name);
 
     design::Problem& design = problem.design;
+    // First of all: which keys there are, and how values are read, follows from the type.
     design.actuator.type = &family_of(settings);
     const Context context{design.actuator};
     for (const Section& section : sections) {

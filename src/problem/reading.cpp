@@ -18,6 +18,7 @@ namespace {
 
 namespace po = boost::program_options;
 
+/// Bytes. Problem files have some thousand; a table or a program given by mistake is refused before it is read.
 constexpr std::uintmax_t largest_file = 1U << 20U;
 
 /// The keys of problem files; options of the command line are added to the same description.
@@ -31,6 +32,7 @@ po::options_description describe_keys(std::span<const Section> sections) {
     return description;
 }
 
+/// Every name that may be meant by a misspelt one.
 std::vector<std::string> known_names(std::span<const Section> sections, std::span<const RunOption> run_options) {
     std::vector<std::string> names;
     for (const Section& section : sections) {
@@ -40,6 +42,7 @@ std::vector<std::string> known_names(std::span<const Section> sections, std::spa
     return names;
 }
 
+/// A key that stands twice has no telling which value was meant; lists are what may repeat.
 void refuse_repetitions(std::span<const Setting> settings, std::span<const Section> sections) {
     std::set<std::string> seen;
     for (const Setting& setting : settings) {
@@ -51,6 +54,7 @@ void refuse_repetitions(std::span<const Setting> settings, std::span<const Secti
     }
 }
 
+/// The file as the parser can read it. Throws ProblemError for what is not a readable file of a sensible size.
 std::string read_text(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
@@ -62,6 +66,7 @@ std::string read_text(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::string content((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
     if (!stream.is_open() || stream.bad()) { throw ProblemError(file.string() + ": cannot be read"); }
+    // Some editors begin UTF-8 files with it, and the first line would then be no section.
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     if (content.starts_with(byte_order_mark)) { content.erase(0, byte_order_mark.size()); }
     // Other readers of INI files take ; for a comment as well, Boost's takes # alone; no value contains either.
@@ -69,6 +74,7 @@ std::string read_text(const std::filesystem::path& file) {
     return content;
 }
 
+/// The words that the parser split a value into, as one text.
 std::string joined(const std::vector<std::string>& values) {
     std::string text;
     for (const std::string& value : values) { text += (text.empty() ? "" : " ") + value; }
@@ -116,6 +122,8 @@ CommandLine parse_command_line(std::span<const std::string> arguments, std::span
         }
     }
     namespace style = po::command_line_style;
+    // Without short options a negative number is a value, and -x is refused as unknown; abbreviations are left out
+    // since a new key could change what they mean.
     constexpr int long_options_only = style::allow_long | style::long_allow_adjacent | style::long_allow_next;
 
     CommandLine line;
@@ -125,6 +133,7 @@ CommandLine parse_command_line(std::span<const std::string> arguments, std::span
         for (const auto& option : parsed.options) {
             const bool is_word = option.string_key.empty();
             const std::string word = is_word ? joined(option.value) : option.string_key;
+            // Unregistered ones are let through by the parser and refused here, where the nearest name can be told.
             if (option.unregistered || (is_word && word.starts_with('-'))) {
                 const auto names = known_names(sections, run_options);
                 const std::string name = word.substr(std::min(word.find_first_not_of('-'), word.size()));
@@ -156,17 +165,21 @@ std::vector<Setting> merge_settings(std::span<const Setting> file, std::span<con
     std::vector<Setting> merged(file.begin(), file.end());
     for (const Setting& option : options) {
         const Row* row = find_row(sections, option.key);
+        // An option takes the place of what the file says of the same key.
         if (row == nullptr || !row->repeatable()) {
             std::erase_if(merged, [&](const Setting& s) { return same_number(s.key) == same_number(option.key); });
             merged.push_back(option);
             continue;
         }
+        // "none" empties the list of the file; options before it too.
         if (clears_list(option)) {
             std::erase_if(merged, [&](const Setting& s) { return s.key == option.key; });
             continue;
         }
         const auto same = std::find_if(merged.begin(), merged.end(), [&](const Setting& s) {
             const Row* other = find_row(sections, s.key);
+            // An option takes the place of the entry of the file about the same thing (variable, objective, side of a
+            // limit), so that one limit can be moved and the others stay; two options about one thing both stand.
             return !s.from_option && other != nullptr && other->repeatable() &&
                    other->subject(s.value) == row->subject(option.value);
         });

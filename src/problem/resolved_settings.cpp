@@ -63,6 +63,7 @@ private:
         if (row.section() == "design") { return ""; }
         const std::string& name = row.name;
         for (const std::string& trouble : problem_.troubles) {
+            // The ways in which messages begin with a key.
             for (const std::string& beginning : {name + " ", name + ":", "--" + name + " ", "option --" + name + ":"}) {
                 if (trouble.starts_with(beginning)) { return trouble; }
             }
@@ -75,6 +76,8 @@ private:
     std::vector<ResolvedSetting> resolved_;
 };
 
+/// The hash of Fowler, Noll and Vo with 64 bits: the same digits on every machine, which std::hash does not promise. It
+/// tells problems apart and protects against nothing.
 class Fnv1a {
 public:
     void add(std::string_view text) {
@@ -106,6 +109,7 @@ std::string problem_hash(const ProblemFile& problem) {
     for (const ResolvedSetting& setting : problem.settings) {
         const bool is_number = !std::isnan(setting.value);
         if (setting.exact.empty() && !setting.of_run) {
+            // Numbers by their exact text: two problems that print alike may differ in the last digit.
             hash.add(setting.name + "=" + (is_number ? model::exact_text(setting.value) : setting.text) + "\n");
         }
     }

@@ -43,6 +43,7 @@ std::string parse_choice(const Setting& setting, std::span<const std::string> ch
 std::vector<double> parse_state(const Setting& setting, std::size_t size) {
     std::vector<double> state;
     std::string text = setting.value;
+    // "0.1, 0" and "0.1 0" are the same state.
     std::replace(text.begin(), text.end(), ',', ' ');
     std::string_view rest = trimmed(text);
     while (!rest.empty()) {
@@ -64,6 +65,7 @@ double parse_margin(const Setting& setting) {
     try {
         margin = model::parse_quantity(setting.value, "1");
     } catch (const std::invalid_argument& error) { throw bad_value(setting, error.what()); }
+    // NaN fails as well.
     if (!(margin >= 0.0 && margin < 0.5)) {
         throw bad_value(setting, "out of range, must be at least 0 and below 0.5 (50 %)");
     }

@@ -11,6 +11,7 @@ namespace percuss::results {
 
 namespace {
 
+/// A cell as RFC 4180 wants it: in quotes where it holds a comma, a quote or a line end, quotes doubled.
 std::string quoted(const std::string& cell) {
     if (cell.find_first_of(",\"\n\r") == std::string::npos) { return cell; }
     std::string text = "\"";
@@ -18,6 +19,7 @@ std::string quoted(const std::string& cell) {
     return text + "\"";
 }
 
+/// "name [unit]".
 std::string title(const Column& column) {
     const bool is_pure = column.unit.empty() || column.unit == "1";
     return quoted(is_pure ? column.name : column.name + " [" + column.unit + "]");
@@ -53,6 +55,7 @@ void CsvTable::row(std::span<const double> values) {
     if (values.size() != width_) { throw std::logic_error("csv: a row must be as wide as the header"); }
     for (std::size_t i = 0; i < width_; ++i) {
         stream_ << (i == 0 ? "" : ",");
+        // NaN is absence: an empty cell. Texts are exact, so that nothing is lost by a table.
         if (!std::isnan(values[i])) { stream_ << model::exact_text(values[i]); }
     }
     end_line();

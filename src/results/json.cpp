@@ -12,6 +12,7 @@ using Writer = nlohmann::ordered_json;
 
 constexpr int indentation = 2;
 
+/// As the library wants it; the order of members is kept.
 Writer to_writer(const Json& json) {
     return std::visit(
         [](const auto& value) -> Writer {
@@ -31,6 +32,7 @@ Writer to_writer(const Json& json) {
         json.value());
 }
 
+/// The way back; whatever else the library knows (binary, discarded) becomes null.
 Json from_reader(const Writer& in) {
     if (in.is_object()) {
         Json out = Json::object();
@@ -44,6 +46,7 @@ Json from_reader(const Writer& in) {
     }
     if (in.is_string()) { return in.get<std::string>(); }
     if (in.is_boolean()) { return in.get<bool>(); }
+    // Before the general case: a double has room for 53 bits only.
     if (in.is_number_integer()) { return in.get<std::int64_t>(); }
     if (in.is_number()) { return in.get<double>(); }
     return nullptr;
@@ -100,10 +103,13 @@ const Json::Array& Json::items() const {
 }
 
 std::string printed(const Json& document) {
+    // Names of files need not be UTF-8; a result is not lost for one: what is not valid is replaced. NaN is written as
+    // null.
     return to_writer(document).dump(indentation, ' ', false, Writer::error_handler_t::replace) + "\n";
 }
 
 Json parsed(const std::string& text) {
+    // A broken document is a value that has no members, not an exception: what is read here may be anything.
     const Writer document = Writer::parse(text, nullptr, false);
     return document.is_discarded() ? Json() : from_reader(document);
 }

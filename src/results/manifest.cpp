@@ -24,6 +24,7 @@ std::string_view state_text(RunState state) {
     return "unknown";
 }
 
+/// Every setting as it counted, defaults too, in base units: a run can be repeated from the manifest.
 Json settings_of(const problem::ProblemFile& problem) {
     Json out = Json::array();
     for (const problem::ResolvedSetting& setting : problem.settings) {
@@ -68,6 +69,7 @@ std::optional<Manifest> read_manifest(const std::filesystem::path& folder) {
     const Json* state = document.find("state");
     const Json* problem = document.find("problem");
     const Json* files = document.find("files");
+    // A file that merely has the name is no manifest: its folder is left alone.
     const bool complete = kind != nullptr && verb != nullptr && state != nullptr && problem != nullptr &&
                           files != nullptr && problem->find("name") != nullptr && problem->find("hash") != nullptr;
     if (!complete || kind->text() != schema) { return std::nullopt; }
@@ -76,6 +78,7 @@ std::optional<Manifest> read_manifest(const std::filesystem::path& folder) {
     manifest.problem = problem->find("name")->text();
     manifest.hash = problem->find("hash")->text();
     for (const Json& file : files->items()) { manifest.files.push_back(file.text()); }
+    // Anything else counts as started: unfinished, which is replaced only when that is asked for.
     for (const RunState each : {RunState::finished, RunState::interrupted}) {
         if (state->text() == state_text(each)) { manifest.state = each; }
     }

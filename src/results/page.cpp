@@ -16,6 +16,7 @@ td { font-variant-numeric: tabular-nums; }
 footer { margin-top: 2.5em; color: #55636f; font-size: .85em; }
 )";
 
+/// Names and messages may hold anything; in a page they must stay text.
 std::string escaped(std::string_view text) {
     std::string out;
     for (const char c : text) {

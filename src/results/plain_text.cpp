@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t column_gap = 2;
 
 /// Number of characters shown, for UTF-8.
+/// Bytes 10xxxxxx continue a character.
 std::size_t width_of(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
@@ -55,11 +56,14 @@ void narrow(std::vector<std::size_t>& widths, std::size_t width) {
     const std::size_t gaps = 2 + column_gap * (widths.size() - 1);
     while (std::accumulate(widths.begin(), widths.end(), gaps) > width) {
         const auto widest = std::max_element(widths.begin(), widths.end());
+        // Too many columns for the width: lines that are too long read better than words in pieces.
         if (*widest <= narrowest) { return; }
+        // One at a time, so that columns of one width share the loss.
         --*widest;
     }
 }
 
+/// width 0: as wide as the cells are.
 void append_table(const Block& block, std::size_t width, std::string& text) {
     std::vector<std::size_t> widths(block.columns.size());
     for (std::size_t i = 0; i < widths.size(); ++i) {

@@ -40,6 +40,7 @@ ShownUnit shown_unit(double value, std::string_view unit) {
     std::string_view rest;
     const auto shown = model::leading_number(text, rest);
     const std::string name(model::trimmed(rest));
+    // Zero has no size to choose a prefix by.
     if (!shown || !std::isfinite(value) || name.empty() || *shown == 0.0) { return {std::string(unit), 1.0}; }
     // A prefix is a power of a thousand (of ten for lengths in cm); the shown number is rounded, the power is not.
     return {name, std::pow(10.0, std::round(std::log10(value / *shown)))};

@@ -47,6 +47,7 @@ ResultFolder::ResultFolder(fs::path path, std::string verb, std::string problem_
     manifest_.problem = std::move(problem_name);
     manifest_.hash = std::move(hash);
     if (path_.empty()) { throw problem::ProblemError("--out '': give the name of a folder, or none"); }
+    // Before anything is computed; whoever gets the lock is decided in start().
     if (FolderLock::is_taken(path_)) { throw in_use(path_); }
     look();
 }
@@ -97,6 +98,7 @@ void ResultFolder::look() {
 
 void ResultFolder::create() {
     std::error_code error;
+    // Innermost first: in this order they can be removed again.
     for (fs::path each = path_; !each.empty() && !fs::exists(each, error); each = each.parent_path()) {
         created_.push_back(each);
     }
@@ -128,6 +130,7 @@ void ResultFolder::remove_created() const {
 }
 
 void ResultFolder::write(const std::string& name, const std::string& content) const {
+    // Written beside and renamed: a reader sees the old file or the new one, never half of it.
     const fs::path partial = path_ / (name + std::string(partial_ending));
     std::ofstream stream(partial, std::ios::binary);
     stream << content;
@@ -142,6 +145,7 @@ std::unique_ptr<RowSink> ResultFolder::table(const std::string& name) const {
 
 void ResultFolder::finish(RunState state, const problem::ProblemFile& problem, const RunRecord& record) {
     manifest_.state = state;
+    // Tables of a run that ended early may not have come to be.
     std::erase_if(manifest_.files, [&](const std::string& name) { return !fs::exists(path_ / name); });
     write(manifest_name, manifest_document(manifest_, problem, record));
     finished_ = true;
@@ -153,6 +157,7 @@ void ResultFolder::remove_files(const std::vector<std::string>& files) const {
         if (is_plain_name(name)) {
             std::error_code error;
             fs::remove(path_ / name, error);
+            // A run that was killed leaves partial files.
             fs::remove(path_ / (name + std::string(partial_ending)), error);
         }
     }

@@ -22,6 +22,7 @@ double parse_end(const Setting& setting, Key key) {
         value = problem::parse_key_value(key, setting.value);
     } catch (const std::invalid_argument& error) { throw bad_value(setting, error.what()); }
     const model::KeyInfo& info = model::key_info(key);
+    // Frequency zero has no drive cycle to integrate over, whatever the key itself allows.
     const bool above = info.lowest_allowed && !model::is_frequency(key) ? value >= info.lowest : value > info.lowest;
     if (!(above && value <= info.highest)) {
         throw bad_value(setting, std::string(info.name) + " must be " + model::allowed_range(info));

@@ -14,6 +14,8 @@ namespace percuss::verbs {
 namespace {
 
 constexpr std::string_view no_folder = "none";
+/// 16 million folders: enough to keep the variants of one problem apart, short enough to read. Should two meet, the
+/// manifest tells their full hashes apart.
 constexpr std::size_t hash_digits = 6;
 
 /// Whether the options make another problem of the file. A file that is no problem by itself is made one by them.
@@ -97,12 +99,14 @@ Session::Session(const Verb& verb, RunSettings settings)
 Ending Session::ending_of(Ending ending) const {
     const bool unfinished =
         ending == Ending::interrupted || ending == Ending::budget || ending == Ending::not_certified;
+    // A run that was cancelled cannot know by what: with a signal it was interrupted, without one its time was over.
     if (unfinished && settings_.interrupted && settings_.interrupted()) { return Ending::interrupted; }
     return ending == Ending::interrupted ? Ending::budget : ending;
 }
 
 void Session::start(std::vector<std::string> files) {
     if (!folder_) { return; }
+    // Told before anything is written: a later run removes what is listed, also of a run that was killed.
     files.insert(files.begin(), {"result.json", "report.html"});
     folder_->start(std::move(files), problem_, record_);
 }

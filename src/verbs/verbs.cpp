@@ -21,6 +21,7 @@ namespace percuss::verbs {
 
 namespace {
 
+/// A verb that is only named: known by help, refused when called.
 Verb later(std::string_view name, std::string_view summary) {
     Verb verb;
     verb.name = name;

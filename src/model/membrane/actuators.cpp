@@ -14,6 +14,7 @@ using std::numbers::pi;
 constexpr double vacuum_permittivity = 8.8541878128e-12;  // F/m, CODATA 2018
 
 constexpr double most_layers = 64.0;
+// Stretch and exponent at their largest together: lambda_p^(3 alpha_A) = 1e150 is still a finite double.
 constexpr double largest_stretch = 10.0;
 constexpr double largest_exponent = 50.0;
 constexpr double largest_permittivity = 1e6;
@@ -137,6 +138,7 @@ struct SiScaling {
         p[voltage] = v[key::drive_voltage] * stretch / (thickness * field_unit);
         p[layers] = v[key::layers];
         p[omega] = 2.0 * pi * v[Key::drive_frequency] * out.time;
+        // delta_B has just been divided by this modulus.
         if (number(v[key::maxwell_modulus]) == 0.0) { switch_maxwell_branch_off(out); }
         return out;
     }
@@ -165,10 +167,12 @@ struct NondimensionalScaling {
     }
 };
 
+/// Without Maxwell branches two states do: the stretches would be followed for nothing.
 const Scene& scene_of(const Specification& spec) {
     return spec.type->scale(spec).parameters[mu_ratio] > 0.0 ? viscous : elastic;
 }
 
+/// A Maxwell branch without viscosity would relax at once: delta_B = 0 is divided by.
 void check_maxwell_branch(const Specification& spec, Key modulus, Key viscosity, std::vector<std::string>& found) {
     if (spec.effective(modulus) != 0.0 && spec.value(viscosity) == 0.0) {
         found.push_back(assignment(viscosity, 0.0) +
@@ -176,6 +180,8 @@ void check_maxwell_branch(const Specification& spec, Key modulus, Key viscosity,
     }
 }
 
+/// Appends what is wrong between keys: a frame no wider than the disk, a stop that presses at rest (which this scaling
+/// and the symmetry of the free motion do not cover), a branch without viscosity.
 void check_si(const Specification& spec, std::vector<std::string>& found) {
     const double inner = spec.value(key::inner_radius);
     const double outer = spec.value(key::outer_radius);
@@ -207,6 +213,7 @@ constexpr ScalePowers of_velocity = {1, -1, 0, {}};
 constexpr std::array<StateInfo, states> state_infos = {
     {{"x", "m", of_length}, {"x'", "m/s", of_velocity}, {"xi_I", "", {}, true}, {"xi_II", "", {}, true}}};
 
+/// Shares of the peak-to-peak voltage on membranes I and II, in anti-phase: (1 -+ cos theta)/2.
 double lower_half(double phase) { return 0.5 * (1.0 - std::cos(phase)); }
 double upper_half(double phase) { return 0.5 * (1.0 + std::cos(phase)); }
 constexpr std::array<DriveSignal, 2> voltages = {{{"voltage_I", "V", lower_half}, {"voltage_II", "V", upper_half}}};

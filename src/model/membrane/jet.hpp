@@ -166,6 +166,8 @@ public:
     [[nodiscard]] std::array<T, 2> power(int n) const {
         T drive(0.0);
         T loss(0.0);
+        // n sum of u phi^2 x' and n sum of [delta_A u^2 s^(-3/2) x'^2 + k3 (L - M) xi'/xi], where u s^(-3/2) x' =
+        // -dS/dtau.
         for (int side = 0; side < 2; ++side) {
             for (int j = 0; j <= n; ++j) {
                 T driven(0.0);
@@ -309,10 +311,12 @@ private:
         }
         const Pair<S> inverse_s = numerics::pair_as<S>(inverse_s_);
         const S& half_alpha = as<S>(half_alpha_a_);
+        // s = 1 + u^2; s w = s' solved for the newest coefficient of w.
         const Pair<S> next_s = square + next_u * first_u;
         const Pair<S> w = inverse_s * (static_cast<Base>(n + 1) * next_s - sw);
         s_.set(n + 1, next_s);
         w_.set(n, w);
+        // P' = alpha_A/2 P w, Q' = -alpha_A/2 Q w, S' = -1/2 S w.
         pw.add_product(p_.template get<S>(0), w);
         qw.add_product(q_.template get<S>(0), w);
         rw.add_product(root_.template get<S>(0), w);
@@ -324,6 +328,7 @@ private:
 
         Pair<S> stress = as<S>(k1_) * p_.template get<S>(n) - as<S>(k2_) * q_.template get<S>(n);
         if constexpr (Viscous) {
+            // r = (L - M/2 - 1/2)/(omega delta_B), z = alpha_B (w/2 - r), L' = L z, M' = -M z.
             const Pair<S> l = l_.template get<S>(n);
             const Pair<S> m = m_.template get<S>(n);
             const Pair<S> r = as<S>(relaxation_) * (l - Base(0.5) * m - (n == 0 ? Pair<S>(S(0.5)) : zero));
@@ -336,6 +341,7 @@ private:
             m_.set(n + 1, (-reciprocal) * mz);
             stress = stress + as<S>(k3_) * (l - m);
         }
+        // e = [k1 P - k2 Q + k3 (L - M)]/s as s e = [...], f = u b with b = e - delta_A omega S' - phi^2.
         const Pair<S> e = inverse_s * (stress - se);
         const Pair<S> phi2 = drive<S>(n);
         const Pair<S> b = e - as<S>(damping_rate_) * slope - phi2;
@@ -344,6 +350,7 @@ private:
         b_.set(n, b);
         ub.add_product(first_u, b);
 
+        // dx'/dtau = -n (f_I + f_II) - f_stop, and over omega the derivative in theta.
         S acceleration = -as<S>(layers_) * (ub.first() + ub.second());
         if (touching) {
             const S penetration = n == 0 ? as<S>(x_[0]) - as<S>(x_stop_) : as<S>(x_[n]);

@@ -172,6 +172,7 @@ private:
         stiffness_ = stiffness;
         damping_ = damping;
         cos_sin(theta, cos1_, sin1_);
+        // Double angle: one cosine and sine per step do.
         cos2_ = 2.0 * cos1_ * cos1_ - 1.0;
         sin2_ = 2.0 * sin1_ * cos1_;
         for (int k = 0; k < 2; ++k) {
@@ -180,6 +181,7 @@ private:
             twice_u_[k] = 2.0 * u_[k];
             side.s = u_[k] * u_[k] + 1.0;
             const V log_s = log(side.s);
+            // The only power of the step, P = s^(alpha_A/2).
             const V p = exp(half_alpha_a_ * log_s);
             const V q = k2_ / p;
             side.c = k1_ * p - q;
@@ -365,6 +367,8 @@ private:
             const SideSums& sum = sums.side[k];
             Side& from = now.side[k];
             Side& to = next.side[k];
+            // s = 1 + u^2 and R R = s, each solved for its newest coefficient; then s e = C + k3 (L - M) + delta_A
+            // omega R'.
             to.s = sums.xx + twice_u_[k] * next.x;
             to.root = half_inverse_root_[k] * (to.s - sum.rr);
             slope[k] = factor.next * to.root;
@@ -383,6 +387,7 @@ private:
             const Side& first = c_[0].side[k];
             Side& from = now.side[k];
             Side& to = next.side[k];
+            // R w = R', C' = alpha_A G w, G' = alpha_A C w, L' = L z, M' = -M z.
             from.w = inverse_root_[k] * (slope[k] - sum.rw);
             to.c = factor.alpha * (sum.gw + first.g * from.w);
             to.g = factor.alpha * (sum.cw + first.c * from.w);

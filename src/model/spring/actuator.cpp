@@ -64,6 +64,7 @@ bool may_be_absent(const Specification&, Key) { return false; }
 
 void check(const Specification& spec, std::vector<std::string>& found) {
     check_suspension(spec, key::stiffness, key::cubic, found);
+    // Which of them counts would have to be guessed.
     if (spec.has(Key::drive_frequency) && spec.has(key::omega)) {
         found.emplace_back("drive.frequency and spring-mass.omega are both given: give one of them");
     }

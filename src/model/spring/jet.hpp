@@ -38,6 +38,7 @@ public:
           omega_(p[spring::omega]),
           bias_(p[spring::bias]),
           inverse_omega_(1.0 / p[spring::omega]),
+          // Two convolutions less where k3 = 0; a derivative with respect to k3 needs x^3 even there.
           cubic_(SeriesTraits<T>::has_derivatives || !is_zero(p[spring::cubic])) {}
 
     void load(const State& y) {

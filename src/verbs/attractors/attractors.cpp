@@ -91,6 +91,8 @@ private:
             attractor::validate(box, exact_.states());
             return box;
         }
+        // The box is made for the motion that the design is driven for; without one, for what the device reaches from
+        // rest.
         const double amplitude = tuned_.empty() ? attractor::amplitude_to_expect(scout_)
                                                 : attractor::measure(exact_, tuned_.front()).amplitude();
         return attractor::ensemble_box(exact_, amplitude);

@@ -78,9 +78,12 @@ private:
 
     /// Branches of twice the period at every flip, their flips in turn, up to the period asked for.
     void follow_flips() {
+        // Branches that are found are appended, so their own flips come up later in this loop.
         for (std::size_t i = 0; i < result_.branches.size() && !is_cut_short(); ++i) {
+            // A copy: appending a branch moves the ones before it.
             const auto boundaries = result_.branches[i].boundaries;
             for (const BoundaryPoint& found : boundaries) {
+                // A multiplier -1 of the half-cycle map means a motion of the same period without the mirror symmetry.
                 const int period = result_.branches[i].period * (found.of_half_cycle ? 1 : 2);
                 if (found.kind != boundary::Kind::flip || period > study_.period || is_cut_short()) { continue; }
                 const auto departure = branch::departure_at_flip(setup_.family, found, options_.size);
@@ -127,6 +130,7 @@ private:
 
     void differentiate() {
         result_.gradient_keys = gradient_keys(setup_.problem.design);
+        // What is varied is the unknown at a boundary: it has no derivative with respect to itself.
         std::erase_if(result_.gradient_keys, [&](model::Key key) {
             return key == setup_.along || (setup_.along_frequency && model::is_frequency(key));
         });
@@ -138,6 +142,8 @@ private:
                 std::vector<flow::ParameterVector> directions;
                 for (const model::Key key : result_.gradient_keys) {
                     directions.push_back(model::scale_derivative(spec, key).parameters);
+                    // The unknown is the nondimensional omega; the part of a key in it through the unit of time is
+                    // added where it is told in rad/s.
                     if (setup_.along_frequency) { directions.back()[setup_.omega_index] = 0.0; }
                 }
                 const auto exact =

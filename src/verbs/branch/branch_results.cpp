@@ -43,6 +43,7 @@ struct UserPoint {
     double peak_force = 0.0;
 };
 
+/// Along a key of the design the scales themselves change from point to point.
 UserPoint to_user(const ProblemFile& problem, const BranchResult& result, const Point& p) {
     const model::Scales scales = scales_at(problem.design, result, p.parameter);
     UserPoint out;
@@ -94,6 +95,7 @@ double told_derivative(const ProblemFile& problem, const BranchResult& result, c
     return d / time - p.omega * d_time / (time * time);
 }
 
+/// Boundary i of branch b; gradients where they were asked for.
 Json boundary_of(const ProblemFile& problem, const BranchResult& result, std::size_t b, std::size_t i) {
     const BoundaryPoint& found = result.branches[b].boundaries[i];
     const UserPoint user = to_user(problem, result, found.point);
@@ -217,6 +219,7 @@ std::string branch_document(const ProblemFile& problem, const BranchResult& resu
         for (std::size_t i = 0; i < boundaries.size(); ++i) {
             out["boundaries"].push_back(boundary_of(problem, result, b, i));
             const int partner = boundaries[i].partner;
+            // Partners point at each other; each pair is told once.
             if (partner > static_cast<int>(i)) {
                 const auto& other = boundaries[static_cast<std::size_t>(partner)];
                 const UserPoint user = to_user(problem, result, boundaries[i].point);

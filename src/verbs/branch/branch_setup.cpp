@@ -44,6 +44,7 @@ BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study, cons
     const bool has_stop = model::has_stop(specification.law);
     if (!model::has_frequency(specification) && !along_frequency) {
         // The frequency of the operating point is held.
+        // The edge is sought with the scout first and refined with the integrator of the problem.
         flow::System looser = system;
         looser.integrator = integrators.scout.get();
         design::OperationOptions options;
@@ -77,6 +78,7 @@ BranchSetup::BranchSetup(const StudyProblem& p, const BranchOptions& study, cons
     }
     scout = system;
     scout.integrator = integrators.scout.get();
+    // Without a stop there is no gap to measure motions by; the unit of length is all there is.
     size = has_stop ? design::motion_size(system) : 1.0;
 }
 
@@ -91,6 +93,8 @@ std::optional<branch::Departure> BranchSetup::departure() const {
     branch::Departure departure;
     departure.parameter = from;
     if (!along_frequency) {
+        // In a design variable from the problem's own value, the design that the user has; in frequency from the
+        // beginning of the range, by default well above the resonance.
         departure.parameter = std::clamp(specification.value(along), std::min(from, to), std::max(from, to));
     }
     departure.direction = to > from ? 1.0 : -1.0;
@@ -99,6 +103,8 @@ std::optional<branch::Departure> BranchSetup::departure() const {
     const design::Reached reached = design::reach_orbit(there, rest, 1, false);
     if (!reached.orbit.ok()) { return std::nullopt; }
     departure.motion = orbit::motion_of(there, reached.orbit);
+    // Over half a cycle where the symmetry allows: half the work, and the loss of the symmetry is a multiplier -1 of
+    // the half-cycle map, a flip like any other.
     if (departure.motion.form == orbit::Form::free) {
         departure.motion.phase = 0.0;
         departure.motion.state = orbit::state_at_zero(there, reached.orbit);

@@ -42,6 +42,7 @@ FoundMotions find_motions_along(const BranchSetup& setup, const BranchOptions& s
         options.starts = study.starts;
         options.seed = setup.problem.seed;
         options.jobs = setup.problem.jobs;
+        // Motions of longer periods than asked for are recognised as such, not followed to the end as irregular ones.
         options.longest_period = std::max(12, study.period);
         const attractor::Box box = attractor::ensemble_box(exact, 0.0);
         const auto ensemble = attractor::find_attractors({exact, scout}, box, options);

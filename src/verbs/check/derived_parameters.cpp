@@ -19,6 +19,8 @@ std::vector<DerivedParameter> derived_parameters(const problem::ProblemFile& pro
     const model::ParameterRoles& roles = actuator.roles;
     for (std::size_t i = 0; i < actuator.parameters.size(); ++i) {
         const int index = static_cast<int>(i);
+        // An omega that is to be found by computing, and parameters of a stop that is not there, have no value to be
+        // shown.
         const bool at_edge = index == roles.omega && !model::has_frequency(spec);
         const bool of_stop = index == roles.gap || index == roles.stop_stiffness || index == roles.stop_damping;
         if (!at_edge && !(of_stop && !model::has_stop(spec.law))) {

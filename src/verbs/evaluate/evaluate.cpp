@@ -11,6 +11,8 @@ namespace {
 
 Ending ending_of(design::EvaluationStatus status) {
     switch (status) {
+        // Another stable motion beside this one is a finding, told by status and verdict; the evaluation itself
+        // succeeded.
         case design::EvaluationStatus::ok:
         case design::EvaluationStatus::not_unique: return Ending::verified;
         case design::EvaluationStatus::no_impact: return Ending::infeasible;

@@ -19,6 +19,8 @@ std::vector<double> round_values(double from, double to, int count) {
     const double high = std::max(from, to);
     const double rough = (high - low) / std::max(1, count);
     const double power = std::pow(10.0, std::floor(std::log10(rough)));
+    // rough/power lies in [1, 10); above 5 the next power is the step. The 1.0001 keeps a rough step of exactly 1, 2 or
+    // 5 from being pushed to the next one by rounding.
     double step = 10.0 * power;
     for (double factor : {1.0, 2.0, 5.0}) {
         if (rough <= 1.0001 * factor * power) {
@@ -27,6 +29,7 @@ std::vector<double> round_values(double from, double to, int count) {
         }
     }
     std::vector<double> values;
+    // The ends are points of the curve anyway; a round value on one of them would come twice.
     const double inside = 1e-9 * (high - low);
     for (double k = std::ceil((low + inside) / step); k * step < high - inside; k += 1.0) {
         values.push_back(k * step);
@@ -34,6 +37,7 @@ std::vector<double> round_values(double from, double to, int count) {
     return values;
 }
 
+/// Whether a known curve, turned back at a cusp, ends at this boundary, which then has no curve of its own.
 bool ends_at(const branch::Locus& curve, const branch::BoundaryPoint& start, double value) {
     if (curve.points.empty()) { return false; }
     const branch::LocusPoint& last = curve.points.back();
@@ -95,6 +99,8 @@ LocusResult run_locus(const StudyProblem& problem, const LocusOptions& study, co
     branch::LocusOptions options;
     options.from = result.from;
     options.to = result.to;
+    // Boundaries move with the key: the range of frequencies of the branch, widened five times, so that a curve is not
+    // cut where the key moves the resonance.
     options.lowest_omega = std::min(setup.from, setup.to) * 0.2;
     options.highest_omega = std::max(setup.from, setup.to) * 5.0;
     options.size = setup.size;

@@ -29,6 +29,7 @@ OptimiseStatus status_without_optimum(const optimise::MultiStartResult& solved, 
 }  // namespace
 
 design::Problem tightened(design::Problem problem) {
+    // No integrator takes less than 1e-16.
     problem.solver.tolerance = std::max(1e-16, verification_factor * problem.solver.tolerance);
     return problem;
 }
@@ -84,6 +85,7 @@ void CaseSolver::solve_fixed(IntegerCase& c, DesignNlp& nlp) {
         return;
     }
     c.solved.best.constraints = e.constraints;
+    // A design on a bound to within rounding meets it.
     if (optimise::infeasibility_of(e.constraints) > activity) {
         c.report.status = OptimiseStatus::infeasible;
         c.report.reason = describe_infeasible(design_, c.solved);
@@ -110,6 +112,7 @@ optimise::MultiStartOptions CaseSolver::options_for(const IntegerCase& c,
     options.starts = problem_.optimiser.starts;
     if (!c.exclusions.empty()) {
         // Half of these problems have no solution, and each evaluation follows a window to its design.
+        // The refuted optimum, given as a warm start, is taken to be close to the solution where there is one.
         options.candidates = std::min(options.candidates, 16);
         options.starts = 1;
         options.solver.max_evaluations = std::min(options.solver.max_evaluations, 400);
@@ -137,6 +140,7 @@ void CaseSolver::solve_continuous(IntegerCase& c, DesignNlp& nlp, const std::vec
 /// and without it a search that was cut short would have nothing to show.
 void CaseSolver::verify(IntegerCase& c, const DesignNlp& nlp) {
     design::Demand demand = nlp.demand(true);
+    // The best design is reported in full, not only in what the search needed.
     demand.quantities = quantities_to_report(at_tier_one(design_));
     demand.error_estimates = true;
     c.verified = tight_evaluator_.evaluate(nlp.specification(c.x), demand);

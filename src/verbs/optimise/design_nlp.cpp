@@ -9,6 +9,8 @@ using design::Quantity;
 using optimise::Vector;
 
 double ContinuousVariable::value(double unit) const {
+    // Solvers step over their bounds by rounding (Ipopt by 1e-8), and at a bound the value must be the one that was
+    // given.
     if (unit <= 0.0) { return lower; }
     if (unit >= 1.0) { return upper; }
     return logarithmic ? lower * std::pow(upper / lower, unit) : lower + unit * (upper - lower);
@@ -80,6 +82,7 @@ Vector DesignNlp::point(const model::Specification& spec) const {
 }
 
 double DesignNlp::limit_scale(std::size_t i) const {
+    // Limits relative to their bounds are of one size whatever their unit; a bound of zero gives no size.
     const double bound = std::abs(problem().limits[i].bound);
     return bound > 0.0 ? bound : 1.0;
 }
@@ -98,6 +101,8 @@ optimise::Evaluation DesignNlp::translate(const design::Evaluation& evaluation, 
     optimise::Evaluation out;
     if (evaluation.status != design::EvaluationStatus::ok) { return out; }
     const bool must_be_alone = problem().single_stable != design::SingleStable::off;
+    // A design whose motion is not known to be alone counts as one that cannot be evaluated: there is no gradient that
+    // leads away from it.
     if (must_be_alone && evaluation.uniqueness.verdict != design::Verdict::unique) { return out; }
     const int n = variables();
     const int m = constraints();
@@ -173,6 +178,7 @@ void DesignNlp::write_row(const model::Specification& spec, const design::Evalua
     std::vector<double> row;
     for (const design::DesignVariable& v : problem().variables) { row.push_back(spec.value(v.key)); }
     for (Quantity q : wanted_quantities(problem())) { row.push_back(evaluation.value(q)); }
+    // As a number, 0 for ok: tables hold nothing else.
     row.push_back(static_cast<double>(evaluation.status) - static_cast<double>(design::EvaluationStatus::ok));
     rows_->row(row);
 }

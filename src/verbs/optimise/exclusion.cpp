@@ -9,6 +9,7 @@ namespace {
 /// an optimiser.
 constexpr double vanishing_width = 1e-4;
 
+/// The window known at the design nearest to this one: a short way to carry it is a safe one.
 const design::Intruder& nearest(const Exclusion& exclusion, const model::Specification& design) {
     const design::Intruder* best = exclusion.intruder.get();
     for (const design::Intruder& known : *exclusion.known) {
@@ -24,6 +25,7 @@ ExclusionValue evaluate(const Exclusion& exclusion, const flow::System& system, 
     ExclusionValue out;
     const design::WindowAt window = design::window_at(system, nearest(exclusion, design), design, keys);
     out.gradient.assign(keys.size(), 0.0);
+    // A window that is not found has vanished: satisfied, by the width at which it would count as vanished.
     out.value = -vanishing_width;
     if (window.status != design::WindowAt::Status::found) { return out; }
     exclusion.known->push_back(window.carried);
@@ -32,6 +34,8 @@ ExclusionValue evaluate(const Exclusion& exclusion, const flow::System& system, 
         exclusion.below ? (1.0 - exclusion.margin) * window.lower : (1.0 + exclusion.margin) * window.upper;
     const double side = sign * (omega / bound - 1.0);
     const double width = (window.upper - window.lower) / window.upper - vanishing_width;
+    // Satisfied on the right side of the window or where it has no width: the smaller value of the two, with its
+    // gradient.
     out.value = std::min(side, width);
     for (std::size_t k = 0; k < keys.size(); ++k) {
         const double d_bound = exclusion.below ? (1.0 - exclusion.margin) * window.d_lower[k]

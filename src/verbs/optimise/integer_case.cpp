@@ -41,6 +41,7 @@ std::vector<model::Specification> enumerate_integers(const design::Problem& prob
         cases = std::move(extended);
     }
     if (cases.empty()) { throw std::invalid_argument("design.variable: an integer range holds no integer"); }
+    // Each case is a nonlinear problem of its own: hundreds of them are hardly meant.
     if (cases.size() > 256) {
         throw std::invalid_argument("design.variable: integer variables have more than 256 combinations");
     }
@@ -69,11 +70,14 @@ std::string describe_infeasible(const design::Problem& problem, const optimise::
     const Vector& violations = solved.best.constraints;
     for (std::size_t i = 0; i < problem.limits.size(); ++i) {
         const int k = static_cast<int>(i);
+        // The multipliers of the least infeasible point say which limits hold each other; in a problem whose functions
+        // are scaled to one, those below 1e-3 count as zero.
         const bool blamed = multipliers.size() > k && multipliers[k] > 1e-3 && violations[k] > 0.0;
         if (blamed) { names += (names.empty() ? "" : " and ") + problem.limits[i].text; }
     }
     if (names.empty()) {
         int worst = 0;
+        // Without multipliers the limit that is missed by most.
         violations.maxCoeff(&worst);
         names = problem.limits[static_cast<std::size_t>(worst)].text;
     }
@@ -91,6 +95,7 @@ struct Report {
     std::vector<LimitReport> limits{};
 };
 
+/// The limits of the problem in their own units.
 void add_limits(Report& r) {
     for (std::size_t i = 0; i < r.problem.limits.size(); ++i) {
         const design::Limit& limit = r.problem.limits[i];
@@ -102,11 +107,13 @@ void add_limits(Report& r) {
         report.upper = limit.upper;
         const double multiplier = r.best.certificate.multipliers[static_cast<int>(i)];
         report.active = std::abs(report.value - limit.bound) <= activity * r.nlp.limit_scale(i);
+        // Back from scaled objective and limit to the gain of the objective per unit of the bound.
         report.multiplier = multiplier * r.scale / r.nlp.limit_scale(i);
         r.limits.push_back(report);
     }
 }
 
+/// The windows kept off, as limits on omega; those that have vanished at the best design are left out.
 void add_windows(Report& r) {
     const model::Specification spec = r.nlp.specification(r.best.x);
     for (std::size_t i = 0; i < r.best.exclusions.size(); ++i) {
@@ -130,6 +137,7 @@ void add_windows(Report& r) {
     }
 }
 
+/// Only bounds that the best design lies on: the others say nothing.
 void add_active_bounds(Report& r) {
     const auto& variables = r.nlp.continuous();
     for (std::size_t j = 0; j < variables.size(); ++j) {
@@ -144,6 +152,7 @@ void add_active_bounds(Report& r) {
         report.text = report.name + (at_upper ? " at its upper bound" : " at its lower bound");
         report.active = true;
         const double scaled = std::abs(r.best.certificate.bound_multipliers[static_cast<int>(j)]);
+        // d(objective)/d(value) from d(scaled objective)/d(unit variable).
         report.multiplier = scaled * r.scale / variables[j].slope(unit);
         r.limits.push_back(report);
     }

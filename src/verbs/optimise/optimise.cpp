@@ -17,6 +17,7 @@ namespace {
 using design::Quantity;
 using optimise::Vector;
 
+/// Throws std::invalid_argument for what a gradient method cannot work on.
 void check(const StudyProblem& problem) {
     const design::Problem& d = problem.design;
     if (d.variables.empty()) { throw std::invalid_argument("design.variable: optimise needs at least one"); }
@@ -88,6 +89,7 @@ private:
         std::vector<IntegerCase> cases;
         for (std::size_t i = 0; i < fixed.size() && !cancelled(); ++i) {
             report_progress(static_cast<double>(i) / static_cast<double>(fixed.size()), fixed[i]);
+            // Of a case that is not certified the last point may be anywhere.
             const bool neighbour = !cases.empty() && cases.back().optimal();
             cases.push_back(
                 solver_.solve(fixed[i], neighbour ? std::vector{cases.back().x} : std::vector<Vector>{}, {}));

@@ -39,6 +39,8 @@ public:
     Refutation run() {
         for (int round = 0; round < most_rounds && !cancelled(); ++round) {
             IntegerCase* best = best_of(problem_.design, cases_);
+            // Keeping off a window costs, so another case may be the best one now. The rounds end when the best one has
+            // been looked at.
             if (best == nullptr || !best->optimal() || best->looked_at) { return std::move(found_); }
             if (!answer(*best, look_by_starts(*best))) { return std::move(found_); }
         }
@@ -75,6 +77,7 @@ private:
             reject(c, "whether it is alone could not be decided: " + evaluation.uniqueness.checked);
             return false;
         }
+        // Of the first refuted design: what being alone costs is the difference to it.
         if (std::isnan(found_.objective_unrefuted)) { found_.objective_unrefuted = c.report.objective; }
         found_.counterexamples.push_back(describe(c, evaluation));
         if (problem_.design.single_stable == design::SingleStable::sampled) {
@@ -124,6 +127,7 @@ private:
         const design::Problem& design = problem_.design;
         IntegerCase best = c;
         bool found = false;
+        // The window splits the frequencies in two; a local solver does not cross it.
         for (const bool below : {true, false}) {
             if (cancelled()) { break; }
             say(below ? "operating below the window" : "operating above the window");

@@ -25,6 +25,7 @@ ProblemError bad_kick(const Setting& setting, const model::Actuator& family, con
 /// Splits at the last place where `word` stands by itself; false if there is none.
 bool split_at(std::string_view text, std::string_view word, std::string_view& before, std::string_view& after) {
     const std::string between = " " + std::string(word) + " ";
+    // The last place: the text before it may hold the word too.
     const auto at = text.rfind(between);
     if (at == std::string_view::npos) { return false; }
     before = trimmed(text.substr(0, at));
@@ -36,6 +37,7 @@ bool split_at(std::string_view text, std::string_view word, std::string_view& be
 std::string with_single_blanks(std::string_view text) {
     std::string out;
     for (const char c : trimmed(text)) {
+        // out.back() is safe: trimmed text begins with no blank.
         const char plain = c == '\t' ? ' ' : c;
         if (plain != ' ' || out.back() != ' ') { out += plain; }
     }

@@ -74,6 +74,7 @@ std::optional<flow::State> orbit_at_zero(const StudyProblem& problem, const Simu
         const design::Evaluator evaluator(problem.design);
         design::Demand demand;
         demand.cancelled = at.cost.cancelled;
+        // As the verb orbit finds it, so that both tell the same motion.
         const auto orbit = evaluator.orbit(problem.design.actuator, std::nullopt, study.orbit_period, demand).orbit;
         if (!orbit.state.empty()) {
             return design::from_user(orbit.state, "orbit", *problem.design.actuator.type, at.scaled.scales,
@@ -97,6 +98,7 @@ std::optional<flow::State> orbit_at_zero(const StudyProblem& problem, const Simu
     return orbit::state_at_zero(at.system, found);
 }
 
+/// The state at phase 0 that the series starts from; false when there is none, with the reason in the result.
 bool choose_start(const StudyProblem& problem, const SimulateOptions& study, Scenario& at, SimulateResult& result) {
     std::optional<flow::State> start;
     switch (study.from) {
@@ -117,6 +119,7 @@ bool choose_start(const StudyProblem& problem, const SimulateOptions& study, Sce
 }
 
 /// The last strobed states, oldest first.
+/// One more than the longest period that settling recognises: the change over such a period needs both of its ends.
 constexpr std::size_t remembered = 13;
 using Strobes = std::deque<flow::State>;
 
@@ -156,6 +159,8 @@ private:
     /// Where the series halts in a drive cycle: at its samples, and at the beginning and end of the kick, which take
     /// the place of a sample that rounding alone keeps apart from them.
     [[nodiscard]] std::vector<double> stations(int number) const {
+        // In drive cycles. A sample at 50 + 7/20 and a kick at 50.35 may differ in the last digit: one place, not two
+        // rows.
         constexpr double apart = 1e-9;
         std::vector<double> stations;
         for (int i = 1; i <= study_.samples; ++i) {
@@ -164,6 +169,7 @@ private:
         if (study_.kick) {
             for (const double position : {study_.kick->at, study_.kick->end()}) {
                 if (!(position > number && position <= number + 1)) { continue; }
+                // The end of the cycle stays: it is compared exactly when states at phase 0 are remembered.
                 std::erase_if(stations, [&](double s) { return s < number + 1 && std::abs(s - position) < apart; });
                 stations.push_back(position);
             }
@@ -212,6 +218,7 @@ SettledMotion undisturbed(const Scenario& at, const Course& course, double kick_
         request.state = state;
         request.theta = 2.0 * pi * (kick_at - std::floor(kick_at));
         request.duration = 2.0 * pi * rest_of_cycle;
+        // As in TimeSeries::advance().
         request.max_events = 1024;
         flow::Result result;
         at.system.run(request, result);
@@ -225,15 +232,18 @@ SettledMotion undisturbed(const Scenario& at, const Course& course, double kick_
     return identify_motion(at.system, state, at.scaled.scales);
 }
 
+/// Relative change of the state at phase 0 over the last period of the series; absent where the series is shorter.
 double change_over(const flow::System& system, const Strobes& strobes, int period) {
     const auto back = static_cast<std::size_t>(period);
     if (period < 1 || strobes.size() <= back) { return design::absent; }
     return orbit::relative_distance(system, strobes[strobes.size() - 1 - back], strobes.back());
 }
 
+/// fell or rose: to a motion with the smaller or larger peak force.
 KickOutcome outcome_of(const flow::System& system, const SettledMotion& before, const SettledMotion& after) {
     if (!before.settled || !after.settled) { return KickOutcome::undecided; }
     if (same_motion(system, before, after)) { return KickOutcome::recovered; }
+    // Two motions that do not strike differ in amplitude alone.
     const bool strikes = before.peak_force > 0.0 || after.peak_force > 0.0;
     const bool weaker = strikes ? after.peak_force < before.peak_force : after.amplitude < before.amplitude;
     return weaker ? KickOutcome::fell : KickOutcome::rose;
@@ -306,6 +316,7 @@ SimulateResult run_simulate(const StudyProblem& problem, const SimulateOptions& 
                 {}};
     at.system = {at.integrators.own.get(), at.scaled.parameters, &at.cost};
     simulate(problem, study, at, series, contacts, observer, result);
+    // A frequency or start that was not found because of a limit is told as the limit.
     if (result.ending != Ending::verified) { (void)cut_short(at.cost, result); }
     result.periods = at.cost.periods();
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();

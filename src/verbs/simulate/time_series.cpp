@@ -10,6 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
+/// Drive phase in [0, 2 pi) at a position in drive cycles.
 double phase_of(double position) { return 2.0 * pi * (position - std::floor(position)); }
 
 }  // namespace
@@ -54,6 +55,7 @@ void TimeSeries::write_headers() {
 }
 
 bool TimeSeries::advance(double position) {
+    // As for starts of ensembles: a limit of 128 gave some of them up in a brute-force check of random designs.
     constexpr int events_per_cycle = 1024;
     flow::Request request;
     request.state = state_;
@@ -64,6 +66,7 @@ bool TimeSeries::advance(double position) {
     system_.run(request, result_);
     status_ = result_.status;
     if (status_ != flow::Status::ok) { return false; }
+    // Pieces end at samples, so one contact may be met in several of them.
     const bool goes_on = !result_.contacts.empty() && result_.contacts.front().open_in;
     if (open_ && !goes_on) {  // it ended where the last piece did
         write_contact(*open_, position_);
@@ -138,6 +141,7 @@ void TimeSeries::write_row() {
     const std::vector<double> state = design::to_user(state_, scales_, system_.states());
     row.insert(row.end(), state.begin(), state.end());
     row.push_back(scales_.force * stop_force());
+    // From the specification, not scaled back: the signal shows the number that was given.
     const double amplitude = spec_.value(*model::key_of(model::Role::drive, *spec_.type)) * share_;
     for (const model::DriveSignal& drive : spec_.type->drives) { row.push_back(amplitude * drive.shape(phase)); }
     series_->row(row);

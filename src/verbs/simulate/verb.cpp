@@ -23,6 +23,7 @@ void read_start(SimulateOptions& options, const Setting& setting, const Context&
         return;
     }
     const std::size_t states = problem::states_of(*context.actuator.type);
+    // A misspelt word deserves the list of words; what begins like a number goes on to be read as a state.
     const bool is_word =
         !text.empty() && std::string_view("+-.0123456789").find(text.front()) == std::string_view::npos;
     if (is_word || text.empty()) {

@@ -18,6 +18,8 @@
 namespace percuss::verbs {
 namespace {
 
+// The range reaches from well below the resonance of the free motion to twice it, where a linear spring with a hard
+// stop at its rest position would resonate.
 constexpr double default_from = 0.6;  // of the linear resonance
 constexpr double default_to = 2.0;
 /// The longest sweep that options allow must fit, at the 10 to 20 steps of the Taylor integrator a drive cycle.
@@ -62,6 +64,7 @@ struct Sweep {
     }
 };
 
+/// What was seen of a motion; omega stays nondimensional. Extremes stay absent where the flow was lost.
 SweepPoint in_user_units(double omega, const orbit::Extremes& extremes, const model::Scales& scales) {
     SweepPoint point;
     point.omega = omega;
@@ -75,6 +78,7 @@ SweepPoint in_user_units(double omega, const orbit::Extremes& extremes, const mo
     return point;
 }
 
+/// The same with how it settled; without a settled motion the period is 0.
 SweepPoint in_user_units(const orbit::SweptPoint& swept, const model::Scales& scales, int states) {
     SweepPoint point = in_user_units(swept.omega, swept.extremes, scales);
     point.cycles = swept.settling.cycles;
@@ -103,16 +107,20 @@ orbit::SettlingOptions settling_options(const SweepOptions& study) {
     return options;
 }
 
+/// Frequencies omega in the order in which they are visited. Both directions take them from one formula, so that points
+/// can be compared by equal omega.
 std::vector<double> frequencies(const Sweep& sweep, bool forward) {
     std::vector<double> omegas;
     const int steps = sweep.study.steps;
     for (int i = 0; i <= steps; ++i) {
+        // The last one exactly: rounding would move the end of the range.
         omegas.push_back(i == steps ? sweep.to : sweep.from + (sweep.to - sweep.from) * i / steps);
     }
     if (!forward) { std::reverse(omegas.begin(), omegas.end()); }
     return omegas;
 }
 
+/// A step sweep in one direction: each frequency starts from where the one before settled.
 void step(Sweep& sweep, const flow::System& system, const flow::State& rest, SweepDirection& direction) {
     orbit::step_sweep(system, frequencies(sweep, direction.forward), rest, settling_options(sweep.study),
                       [&](const orbit::SweptPoint& swept) {
@@ -126,6 +134,7 @@ void step(Sweep& sweep, const flow::System& system, const flow::State& rest, Swe
     direction.jumps = find_jumps(direction.points);
 }
 
+/// A chirp in one direction, from the motion settled on at its first frequency.
 void chirp(Sweep& sweep, const flow::System& system, const flow::State& rest, SweepDirection& direction) {
     const double from = direction.forward ? sweep.from : sweep.to;
     const double to = direction.forward ? sweep.to : sweep.from;
@@ -144,9 +153,11 @@ void chirp(Sweep& sweep, const flow::System& system, const flow::State& rest, Sw
     direction.jumps = find_chirp_jumps(direction.points);
 }
 
+/// One direction, from rest. It has its own cost, so a limit ends each by itself.
 SweepDirection go(Sweep& sweep, bool forward) {
     SweepDirection direction;
     direction.forward = forward;
+    // One cost per direction: they may run at the same time, and a cost belongs to one thread.
     flow::Cost cost = limited_cost(sweep.cancelled, sweep.cycles_in_all(), steps_per_cycle);
     flow::System system{sweep.integrators.own.get(), sweep.scaled.parameters, &cost};
     const flow::State rest = system.integrator->rest_state(system.parameters);
@@ -159,6 +170,7 @@ SweepDirection go(Sweep& sweep, bool forward) {
 
 std::vector<SweepDirection> go_both_ways(Sweep& sweep, int jobs) {
     std::vector<SweepDirection> directions;
+    // The directions are independent, so the points are the same either way.
     if (jobs > 1) {
         auto backward = std::async(std::launch::async, [&] { return go(sweep, false); });
         directions.push_back(go(sweep, true));
@@ -169,6 +181,7 @@ std::vector<SweepDirection> go_both_ways(Sweep& sweep, int jobs) {
     return directions;
 }
 
+/// Ends of the sweep as nondimensional omega. Throws std::invalid_argument for an empty range.
 void set_range(Sweep& sweep) {
     const double resonance = sweep.integrators.own->linear_resonance(sweep.scaled.parameters);
     const double unit = sweep.scaled.scales.time;
@@ -232,6 +245,7 @@ void write(const SweepResult& result, const StudyProblem& problem, SweepMode mod
     }
 }
 
+/// An interruption is told before a trouble, and of two troubles the first.
 void conclude(const Sweep& sweep, SweepResult& result) {
     long points = 0;
     for (const SweepDirection& direction : result.directions) {
@@ -245,6 +259,7 @@ void conclude(const Sweep& sweep, SweepResult& result) {
         }
     }
     if (result.ending != Ending::not_run) { return; }
+    // Without trouble in either direction, points are missing only where the sweep was cancelled between two of them.
     result.ending = points == sweep.points_in_all() ? Ending::verified : Ending::interrupted;
     if (result.ending == Ending::interrupted) { result.reason = "stopped before the end"; }
 }

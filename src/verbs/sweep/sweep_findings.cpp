@@ -7,8 +7,14 @@
 namespace percuss::verbs {
 namespace {
 
+/// Times the larger of the steps beside it. Measured on the default step sweeps of wu2022-nondimensional and
+/// soft-impact, among steps over 1 % of the range: within one settled motion at most 1.4, where the motion jumps 16 to
+/// 54 in the peak force and 2 to 58 in the amplitude.
 constexpr double out_of_line = 4.0;
+/// Of the range of the whole sweep: where the motion hardly changes, rounding and what settling leaves are out of line
+/// too.
 constexpr double noticeable = 1e-2;
+/// A motion of period up to 12 that strikes does so at least once in so many cycles: a shorter pause may be part of it.
 constexpr std::size_t quiet_cycles = 12;
 
 using Value = double SweepPoint::*;
@@ -29,6 +35,7 @@ public:
         const double before = i > 0 ? step_after(i - 1) : design::absent;
         const double after = step_after(i + 1);
         if (std::isnan(own) || (std::isnan(before) && std::isnan(after))) { return false; }
+        // Compared with the larger neighbour, a steep flank is not taken for a jump: steps along it are alike.
         const double beside = std::fmax(before, after);  // the one that is there, if only one is
         return own > noticeable * range_ && own > out_of_line * beside;
     }
@@ -45,6 +52,7 @@ private:
 };
 
 bool other_contacts(const SweepPoint& a, const SweepPoint& b) {
+    // Contacts per cycle compared without dividing.
     return a.settled && b.settled && a.contacts * b.period != b.contacts * a.period;
 }
 
@@ -106,6 +114,7 @@ std::vector<SweepJump> find_chirp_jumps(std::span<const SweepPoint> cycles) {
 SweepComparison compare(std::span<const SweepPoint> forward, std::span<const SweepPoint> backward,
                         double settling_tolerance) {
     SweepComparison comparison;
+    // Settling bounds the strobed state; extrema and above all the force of a stiff stop move by many times as much.
     comparison.tolerance = std::max(1e-5, 1e3 * settling_tolerance);
     std::map<double, const SweepPoint*> others;
     for (const SweepPoint& point : backward) { others.emplace(point.omega, &point); }

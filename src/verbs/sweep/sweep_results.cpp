@@ -39,6 +39,7 @@ std::string_view mode_of(const ProblemFile& problem) { return is_chirp(problem) 
 
 std::string_view direction_of(const SweepDirection& direction) { return direction.forward ? "forward" : "backward"; }
 
+/// What differs between two neighbouring points, in the words of the document.
 std::vector<std::string> changes_of(const SweepJump& jump) {
     std::vector<std::string> changes;
     if (jump.period) { changes.emplace_back("period"); }
