@@ -83,10 +83,13 @@ public:
 
     /// Blocks are begun in their order: when those that have ended have spent the budget, so have those before this
     /// one.
+    /// Once a limit is met the blocks that are left are not even set up: of ten million starts there are 156,250, and
+    /// setting them up took 6 s after the time was over.
     BlockResult follow(long block, const KnownOrbits& known) {
-        if (steps_ > budget()) {
+        const bool cancelled = is_cancelled();
+        if (cancelled || steps_ > budget()) {
             BlockResult none;
-            none.limit = flow::Status::budget_spent;
+            none.limit = cancelled ? flow::Status::cancelled : flow::Status::budget_spent;
             return none;
         }
         Starts starts;
@@ -104,6 +107,10 @@ public:
 
 private:
     [[nodiscard]] long budget() const { return step_budget_of(systems_); }
+    [[nodiscard]] bool is_cancelled() const {
+        const flow::Cost* cost = systems_.exact.cost;
+        return cost != nullptr && cost->cancelled && cost->cancelled();
+    }
 
     const Systems& systems_;
     const Box& box_;

@@ -320,7 +320,7 @@ private:
         // A last point beyond the first is on the way that was gone at the beginning.
         const bool passed = (points.back().parameter - points[0].parameter) * way_there >= 0.0;
         if (passed) { points.pop_back(); }
-        points.push_back(Point(points.front()));
+        points.emplace_back(points.front());
         branch_.end = End::closed;
     }
 

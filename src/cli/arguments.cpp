@@ -88,6 +88,7 @@ void apply(const Setting& option, Arguments& arguments) {
 
 std::vector<problem::RunOption> run_options_of(const verbs::Verb& verb) {
     std::vector<problem::RunOption> options;
+    options.reserve(std::size(common_table) + verb.options.size());
     for (const CommonRow& row : common_table) {
         options.push_back({std::string(row.option.name), !row.option.value.empty()});
     }

@@ -42,8 +42,10 @@ Block keys_block(const std::function<bool(const problem::Row&)>& listed) {
             if (!listed(row)) { continue; }
             const std::string unit = row.unit.empty() ? "" : " [" + row.unit + "]";
             const std::string fallback = row.fallback.empty() ? "required" : "default " + row.fallback;
-            block.rows.push_back({row.name, row.meaning + (row.repeatable() ? " (repeatable)" : "") + "; " +
-                                                row.allowed + unit + "; " + fallback});
+            std::string meaning = row.meaning;
+            meaning.append(row.repeatable() ? " (repeatable)" : "").append("; ").append(row.allowed);
+            meaning.append(unit).append("; ").append(fallback);
+            block.rows.push_back({row.name, meaning});
         }
     }
     return block;

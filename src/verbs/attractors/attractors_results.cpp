@@ -97,7 +97,9 @@ Block states_block(const ProblemFile& problem, const AttractorsResult& result) {
     Block block{"States at theta = 0, before the longest flight", "", {"motion", "period"}, {}};
     for (std::size_t k = 0; k < std::min(result.lower.size(), entries.size()); ++k) {
         const auto& [name, unit] = entries[k];
-        block.columns.push_back(name + (unit.empty() ? "" : " [" + unit + "]"));
+        std::string column(name);
+        if (!unit.empty()) { column.append(" [").append(unit).append("]"); }
+        block.columns.push_back(std::move(column));
     }
     for (const AttractorReport& a : result.attractors) {
         std::vector<std::string> row = {std::string(attractor::to_string(a.kind)), period_text(a)};

@@ -8,15 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 namespace percuss::verbs {
 namespace {
 
 using model::Key;
-using model::Specification;
-using std::numbers::pi;
 
 /// Default range in units of the linear resonance: the resonance of a motion that bounces on a stiff stop lies below
 /// twice that of the free one.

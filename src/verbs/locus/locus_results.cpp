@@ -29,7 +29,7 @@ model::Scales scales_of(const ProblemFile& problem, const LocusResult& result, d
 }
 
 std::string frequency_text(const ProblemFile& problem, const LocusResult& result, double omega, double value) {
-    const std::string text = model::number_text(omega, 12);
+    std::string text = model::number_text(omega, 12);
     if (units_of(problem) != "si") { return text; }
     const double hertz = design::drive_frequency(omega, scales_of(problem, result, value));
     return text + " (" + text_of(problem, Quantity::drive_frequency, hertz) + ")";

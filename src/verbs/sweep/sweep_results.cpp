@@ -115,7 +115,7 @@ std::string frequency_text(const ProblemFile& problem, const SweepPoint& point) 
 
 /// "3 contacts in 2 cycles", "irregular".
 std::string motion_text(const SweepPoint& point, bool chirp) {
-    const std::string contacts = std::to_string(point.contacts) + (point.contacts == 1 ? " contact" : " contacts");
+    std::string contacts = std::to_string(point.contacts) + (point.contacts == 1 ? " contact" : " contacts");
     if (chirp) { return contacts; }
     if (!point.settled) { return "not settled"; }
     return "period " + std::to_string(point.period) + ", " + contacts;
