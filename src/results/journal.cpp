@@ -83,7 +83,9 @@ Found look_at(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     stream.read(header.data(), header.size());
     if (!stream && stream.gcount() == 0) { refuse(JournalFault::no_access, file, "cannot be read"); }
-    if (std::string(header.data()) != "SQLite format 3") { refuse_foreign(file, "not a SQLite database"); }
+    // Sixteen bytes with the closing zero (SQLite's file format, section 1.3.1); a foreign file need not hold a zero.
+    constexpr std::string_view magic("SQLite format 3\0", 16);
+    if (std::string_view(header.data(), magic.size()) != magic) { refuse_foreign(file, "not a SQLite database"); }
     // With a rollback journal beside it the file is not in its final state: let SQLite set it right first.
     if (std::filesystem::exists(file.string() + "-journal", error)) { return Found::journal; }
     int id = 0;
