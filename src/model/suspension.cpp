@@ -61,7 +61,8 @@ Solutions equilibria(const Suspension& s) {
         stable.add(0.0);
         return stable;
     }
-    for (const double x : solve(s.stiffness, s.cubic, s.bias).all()) {
+    const Solutions every = solve(s.stiffness, s.cubic, s.bias);
+    for (const double x : every.all()) {
         if (s.stiffness + 3.0 * s.cubic * x * x > 0.0) { stable.add(x); }
     }
     return stable;
@@ -80,7 +81,8 @@ double rest_position(const Suspension& s) {
     }
     if (s.stop_stiffness > 0.0) {
         // k1 x + k3 x^3 + k (x - gap) = F0
-        for (const double x : solve(s.stiffness + s.stop_stiffness, s.cubic, s.bias + s.stop_stiffness * s.gap).all()) {
+        const Solutions against = solve(s.stiffness + s.stop_stiffness, s.cubic, s.bias + s.stop_stiffness * s.gap);
+        for (const double x : against.all()) {
             const double slope = s.stiffness + s.stop_stiffness + 3.0 * s.cubic * x * x;
             if (is_pressed(s, x) && slope > 0.0) { return x; }
         }
