@@ -15,7 +15,8 @@ struct Solutions {
     std::array<double, 3> x{};
     std::size_t count = 0;
     void add(double value) { x[count++] = value; }
-    [[nodiscard]] std::span<const double> all() const { return {x.data(), count}; }
+    [[nodiscard]] std::span<const double> all() const& { return {x.data(), count}; }
+    std::span<const double> all() && = delete;  // the numbers live no longer than this does
 };
 
 /// One Newton step takes the closed form's rounding away; a double solution is left as it is.
