@@ -123,6 +123,7 @@ std::vector<double> exclusive_contributions(const std::vector<Vector>& points, c
     std::vector<double> contributions(points.size(), 0.0);
     const std::vector<std::size_t> inside = inside_sorted_by(0, points, reference);
     std::vector<Vector> candidates;
+    candidates.reserve(inside.size());
     for (const std::size_t i : inside) candidates.push_back(points[i]);
     const std::vector<std::size_t> front = non_dominated(candidates);
 
@@ -158,7 +159,8 @@ HypervolumeBounds unknown_front_bounds(const std::vector<Vector>& points, const 
         throw std::invalid_argument(message.str());
     }
     std::vector<Vector> mirrored;
-    for (const Vector& p : points) mirrored.push_back(-p.cwiseMax(ideal).cwiseMin(reference));
+    mirrored.reserve(points.size());
+    for (const Vector& p : points) mirrored.emplace_back(-p.cwiseMax(ideal).cwiseMin(reference));
     const double box = (reference - ideal).prod();
     const double lower = hypervolume(points, reference);
     return {lower, std::max(lower, box - hypervolume(mirrored, -ideal))};

@@ -78,6 +78,7 @@ public:
     ExploreProgress run() {
         Exchange exchange(jobs_);
         std::vector<std::jthread> workers;
+        workers.reserve(static_cast<std::size_t>(jobs_));
         const Stopper stopper{*this};  // before the threads are joined, whatever happens here
         for (int i = 0; i < jobs_; ++i) {
             workers.emplace_back([&] { work(exchange); });
@@ -189,7 +190,7 @@ private:
 
 }  // namespace
 
-Exploration::Exploration(const problem::ProblemFile& problem, std::string instruction_set)
+Exploration::Exploration(const problem::ProblemFile& problem, const std::string& instruction_set)
     : space_(problem.design.variables, problem.get<ExploreOptions>(), problem.design.sampling.seed),
       layout_(problem, problem.get<ExploreOptions>()),
       work_{explore_kind, exploration_text(problem, instruction_set), layout_.journal_columns()} {}

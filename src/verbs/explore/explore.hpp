@@ -16,7 +16,7 @@ namespace percuss::verbs {
 class Exploration {
 public:
     /// Throws problem::ProblemError without variables or for a number of samples that the sampling cannot give.
-    Exploration(const problem::ProblemFile& problem, std::string instruction_set);
+    Exploration(const problem::ProblemFile& problem, const std::string& instruction_set);
 
     [[nodiscard]] const DesignSpace& space() const { return space_; }
     [[nodiscard]] const TableLayout& layout() const { return layout_; }
